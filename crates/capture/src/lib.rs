@@ -1,0 +1,31 @@
+//! The documents of the capture side: plate manifests, annotations, calibration, and their files.
+//!
+//! No pixels here: everything works on numbers a person or a program read off a photograph.
+//! Coordinates are *plate pixels* (`point_in_plate_px`: origin at the top left of the image file, x right, y down),
+//! so that labels survive a new split of the plate into panels.
+//! A person sees near and off limbs; files say so, and [`Facing`] turns them into the horse's left and right.
+
+mod annotation;
+mod calibration;
+mod files;
+mod keypoint;
+mod line;
+mod manifest;
+mod parallax;
+mod timing;
+mod validation;
+
+pub use annotation::{
+    ANNOTATION_SCHEMA, Annotation, Event, Instant, KeypointState, Keypoints, LegContacts, Mark,
+    PanelAnnotation, PanelUse, Placed, PlacedBy, StanceLabel, StrideSpan,
+};
+pub use calibration::{CalibrationError, Disagreement, Estimate, PanelCamera, PlateCalibration, calibrate};
+pub use files::{
+    FileError, Hash, hash_file, read_json, read_text, to_stable_json, write_atomically, write_json,
+};
+pub use keypoint::{BodyPoint, KEYPOINT_COUNT, Keypoint, LimbJoint, NearOff};
+pub use manifest::{
+    Calibration, Camera, Facing, Known, KnownLength, MANIFEST_SCHEMA, Manifest, Panel, Parallax, Plane,
+    PlateImage, Position, Scale, ScaleSource, Time, TimeSource,
+};
+pub use validation::{Fault, ImageCheck, Plate, PlateError};

@@ -1,0 +1,89 @@
+//! Parallax measured from the plate itself: a hoof in stance stays where it is while the camera changes.
+//!
+//! With camera `i` at `X_i`, a toe seen `e_i` metres ahead of the axis *at the wall's scale* stands at
+//! `X_i + e_i / r`, where `r` is the scale on the track over the scale on the wall. Equal places in two panels of the
+//! same stance give `r = (e_i - e_j) / (X_j - X_i)`; all pairs together, least squares.
+
+use muybridge_core::Pair;
+
+use crate::annotation::{PanelAnnotation, StanceLabel};
+use crate::calibration::{Context, Estimate};
+use crate::keypoint::{Keypoint, NearOff};
+use crate::line::GroundLine;
+use crate::manifest::{KnownLength, Position};
+
+/// Half the distance between near and off hooves' planes is small against the camera's distance; the off hooves'
+/// smaller scale is corrected with this width between them, m (twice the reference horse's hoof offset).
+const HOOF_TRACK_WIDTH_M: f64 = 0.24;
+
+/// A toe in stance: place of its panel's camera and px ahead of the axis at wall scale, both metres.
+struct StanceToe {
+    panel: u32,
+    camera_x_m: f64,
+    ahead_m: f64,
+}
+
+/// Scale on the track over scale on the wall; none when no hoof is labelled stance and seen in two neighbouring panels.
+pub(crate) fn scale_ratio_from_stance(context: &Context<'_>, length: &KnownLength) -> Option<Estimate> {
+    let Position::CameraSpacing { spacing_m, first_axis_mark } = &context.manifest.calibration.position
+    else {
+        return None;
+    };
+    let mut pairs = Vec::new();
+    for side in [NearOff::Near, NearOff::Off] {
+        for pair in [Pair::Fore, Pair::Hind] {
+            let toes: Vec<Option<StanceToe>> = context
+                .stride_panels()
+                .iter()
+                .map(|panel| {
+                    stance_toe(context, panel, length, side, pair, spacing_m.value, *first_axis_mark)
+                })
+                .collect();
+            pairs.extend(toes.windows(2).filter_map(|two| match two {
+                [Some(a), Some(b)] if b.panel == a.panel + 1 => {
+                    Some((b.camera_x_m - a.camera_x_m, a.ahead_m - b.ahead_m))
+                }
+                _ => None,
+            }));
+        }
+    }
+    let sxx: f64 = pairs.iter().map(|(dx, _)| dx * dx).sum();
+    let ratio = pairs.iter().map(|(dx, de)| dx * de).sum::<f64>() / sxx;
+    let n = pairs.len() as f64;
+    if !(ratio.is_finite() && ratio > 0.0) {
+        return None;
+    }
+    let residual: f64 = pairs.iter().map(|(dx, de)| (de - ratio * dx).powi(2)).sum();
+    // With a single pair nothing is left over to judge by: a toe read to 1 % of the withers height at each end.
+    let sd = if n > 1.0 { (residual / (n - 1.0) / sxx).sqrt() } else { 0.03 };
+    Some(Estimate { value: ratio, sd })
+}
+
+fn stance_toe(
+    context: &Context<'_>,
+    panel: &PanelAnnotation,
+    length: &KnownLength,
+    side: NearOff,
+    pair: Pair,
+    spacing_m: f64,
+    first_axis_mark: f64,
+) -> Option<StanceToe> {
+    if panel.contacts.of(side, pair) != StanceLabel::Stance {
+        return None;
+    }
+    let mark_m = length.mark_spacing_m.value;
+    let scale = context.mark_scale(panel, mark_m)?;
+    let place = panel.keypoints.place(Keypoint::hoof(side, pair))?;
+    let along_px = GroundLine::through(panel.ground_px).along_and_above(place)[0];
+    let camera_x_m = spacing_m * (f64::from(panel.panel) - f64::from(context.annotation.stride.first));
+    let facing = context.manifest.facing.sign();
+    let axis_mark_m = first_axis_mark * mark_m + scale.sign * facing * camera_x_m;
+    let axis_px = scale.zero_along_px + scale.sign * scale.px_per_m * axis_mark_m;
+    let distance_m = context.manifest.calibration.camera.distance_m.value;
+    let shrink = match side {
+        NearOff::Near => 1.0,
+        NearOff::Off => distance_m / (distance_m + HOOF_TRACK_WIDTH_M),
+    };
+    let ahead_m = facing * (along_px - axis_px) / (scale.px_per_m * shrink);
+    Some(StanceToe { panel: panel.panel, camera_x_m, ahead_m })
+}

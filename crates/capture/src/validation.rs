@@ -1,0 +1,413 @@
+//! Loading a plate's documents together, and saying what is wrong with them: file, panel, field, and what to do.
+
+use std::path::{Path, PathBuf};
+
+use crate::annotation::{ANNOTATION_SCHEMA, Annotation, KeypointState, PanelAnnotation, PanelUse};
+use crate::files::{FileError, Hash, hash_file, read_json};
+use crate::manifest::{
+    Calibration, Known, MANIFEST_SCHEMA, Manifest, Parallax, Plane, Position, ScaleSource, TimeSource,
+};
+
+/// Fewest points for a panel to count: fewer leave the root and the trunk undetermined.
+const MIN_POINTS_PER_PANEL: usize = 6;
+/// Fewest panels for a stride: a cyclic curve through fewer says nothing about contacts.
+const MIN_STRIDE_PANELS: usize = 4;
+/// A point may lie this far outside its panel, px: hooves and noses touch the mount.
+const PANEL_MARGIN_PX: f64 = 12.0;
+
+/// One thing that is wrong in a document.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// The file.
+    pub path: PathBuf,
+    /// The panel, where it concerns one.
+    pub panel: Option<u32>,
+    /// The field.
+    pub field: String,
+    /// What is wrong and what to do.
+    pub message: String,
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: ", self.path.display())?;
+        if let Some(panel) = self.panel {
+            write!(f, "panel {panel}: ")?;
+        }
+        write!(f, "{}: {}", self.field, self.message)
+    }
+}
+
+/// Why a plate cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PlateError {
+    /// A file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The documents are readable, but wrong.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Faults(Vec<Fault>),
+}
+
+/// Whether an image file was there to be compared with its hash.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImageCheck {
+    /// Every image is there and its hash agrees.
+    Verified,
+    /// At least one image is not on this machine; points can be fitted without it.
+    Absent,
+}
+
+/// A plate's manifest and annotation, validated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plate {
+    /// The annotation file.
+    pub annotation_path: PathBuf,
+    /// SHA-256 of the annotation file.
+    pub annotation_sha256: Hash,
+    /// The manifest file.
+    pub manifest_path: PathBuf,
+    /// What is known of the plate.
+    pub manifest: Manifest,
+    /// What was marked on it.
+    pub annotation: Annotation,
+    /// Whether the images were there.
+    pub images: ImageCheck,
+}
+
+impl Plate {
+    /// Reads an annotation and the manifest it names, and validates both.
+    ///
+    /// # Errors
+    /// When a file cannot be read or parsed, or with every fault found, in document order.
+    pub fn load(annotation_path: &Path) -> Result<Self, PlateError> {
+        let annotation: Annotation = read_json(annotation_path, ANNOTATION_SCHEMA)?;
+        let relative = Path::new(&annotation.plate);
+        if relative.is_absolute() || annotation.plate.contains('\\') {
+            return Err(PlateError::Faults(vec![Fault {
+                path: annotation_path.to_path_buf(),
+                panel: None,
+                field: "plate".into(),
+                message: "must be a path relative to this file, with forward slashes".into(),
+            }]));
+        }
+        let manifest_path = annotation_path.parent().unwrap_or(Path::new(".")).join(relative);
+        let manifest: Manifest = read_json(&manifest_path, MANIFEST_SCHEMA)?;
+        let mut faults = Faults { path: manifest_path.clone(), found: Vec::new() };
+        faults.manifest(&manifest);
+        let images = faults.images(&manifest, &manifest_path);
+        faults.path = annotation_path.to_path_buf();
+        faults.annotation(&annotation, &manifest);
+        if !faults.found.is_empty() {
+            return Err(PlateError::Faults(faults.found));
+        }
+        Ok(Self {
+            annotation_sha256: hash_file(annotation_path)?,
+            annotation_path: annotation_path.to_path_buf(),
+            manifest_path,
+            manifest,
+            annotation,
+            images,
+        })
+    }
+
+    /// Path of an image file on this machine (it may be absent).
+    pub fn image_path(&self, index: usize) -> PathBuf {
+        image_path(&self.manifest_path, &self.manifest.images[index].file)
+    }
+}
+
+fn image_path(manifest_path: &Path, file: &str) -> PathBuf {
+    manifest_path.parent().unwrap_or(Path::new(".")).join(file)
+}
+
+struct Faults {
+    path: PathBuf,
+    found: Vec<Fault>,
+}
+
+impl Faults {
+    fn add(&mut self, panel: Option<u32>, field: impl Into<String>, message: impl Into<String>) {
+        let (path, field, message) = (self.path.clone(), field.into(), message.into());
+        self.found.push(Fault { path, panel, field, message });
+    }
+
+    fn check(&mut self, good: bool, panel: Option<u32>, field: &str, message: &str) {
+        if !good {
+            self.add(panel, field, message);
+        }
+    }
+
+    /// A known value within a range, with a standard deviation that is not negative.
+    fn known(&mut self, field: &str, known: Option<&Known>, [low, high]: [f64; 2]) {
+        let Some(known) = known else { return };
+        if !(known.value > low && known.value <= high) {
+            self.add(
+                None,
+                format!("{field}.value"),
+                format!("{} is out of range; expected more than {low} and at most {high}", known.value),
+            );
+        }
+        if !(known.sd >= 0.0 && known.sd <= high) {
+            self.add(
+                None,
+                format!("{field}.sd"),
+                format!("{} must not be negative and at most {high}", known.sd),
+            );
+        }
+    }
+
+    fn manifest(&mut self, manifest: &Manifest) {
+        self.check(!manifest.images.is_empty(), None, "images", "a plate needs at least one image");
+        for (i, image) in manifest.images.iter().enumerate() {
+            let field = format!("images[{i}]");
+            self.check(
+                is_sha256(&image.sha256),
+                None,
+                &format!("{field}.sha256"),
+                "must be 64 lower-case hexadecimal digits",
+            );
+            self.check(
+                image.width_px > 0 && image.height_px > 0,
+                None,
+                &field,
+                "width and height must be positive",
+            );
+            self.check(
+                !Path::new(&image.file).is_absolute(),
+                None,
+                &format!("{field}.file"),
+                "must be a relative path",
+            );
+        }
+        let mut last = 0;
+        for panel in &manifest.panels {
+            self.check(
+                panel.panel > last,
+                Some(panel.panel),
+                "panel",
+                "panel numbers must rise from 1 without repeats",
+            );
+            last = panel.panel;
+            let Some(image) = manifest.images.get(panel.image) else {
+                self.add(Some(panel.panel), "image", "there is no image of this index");
+                continue;
+            };
+            let [width, height] = [f64::from(image.width_px), f64::from(image.height_px)];
+            let inside = panel
+                .quad_px
+                .iter()
+                .all(|[x, y]| (-1.0..=width + 1.0).contains(x) && (-1.0..=height + 1.0).contains(y));
+            self.check(inside, Some(panel.panel), "quad_px", "a corner lies outside the image");
+            self.check(
+                quad_area(&panel.quad_px) > 100.0,
+                Some(panel.panel),
+                "quad_px",
+                "corners must run clockwise from the top left",
+            );
+        }
+        self.calibration(&manifest.calibration);
+    }
+
+    fn calibration(&mut self, calibration: &Calibration) {
+        let scale = &calibration.scale;
+        let length = scale.known_length.as_ref();
+        self.known("calibration.scale.withers_height_m", scale.withers_height_m.as_ref(), [0.3, 3.0]);
+        self.known(
+            "calibration.scale.known_length.mark_spacing_m",
+            length.map(|l| &l.mark_spacing_m),
+            [0.0, 100.0],
+        );
+        match length.map(|l| &l.plane) {
+            Some(Plane::Wall(Parallax::Ratio(known))) => {
+                self.known("calibration.scale.known_length.plane.wall.ratio", Some(known), [1.0, 10.0]);
+            }
+            Some(Plane::Wall(Parallax::Distances { camera_to_track_m, camera_to_wall_m })) => {
+                let good = *camera_to_track_m > 0.0
+                    && camera_to_wall_m >= camera_to_track_m
+                    && *camera_to_wall_m <= 1000.0;
+                self.check(
+                    good,
+                    None,
+                    "calibration.scale.known_length.plane.wall.distances",
+                    "the wall must be farther than the track, both positive, in metres",
+                );
+            }
+            _ => {}
+        }
+        let given = match scale.driven_by {
+            ScaleSource::KnownLength => scale.known_length.is_some(),
+            ScaleSource::WithersHeight => scale.withers_height_m.is_some(),
+        };
+        self.check(given, None, "calibration.scale.driven_by", "names a source that is not given");
+        if let Position::CameraSpacing { spacing_m, first_axis_mark } = &calibration.position {
+            self.known("calibration.position.spacing_m", Some(spacing_m), [0.0, 100.0]);
+            self.check(
+                first_axis_mark.abs() < 1e4,
+                None,
+                "calibration.position.first_axis_mark",
+                "must be a mark number",
+            );
+        }
+        self.time(calibration);
+        self.known("calibration.camera.distance_m", Some(&calibration.camera.distance_m), [1.0, 1000.0]);
+        self.known("calibration.camera.height_m", Some(&calibration.camera.height_m), [-1.0, 50.0]);
+    }
+
+    fn time(&mut self, calibration: &Calibration) {
+        let time = &calibration.time;
+        self.known("calibration.time.interval_s", time.interval_s.as_ref(), [0.0, 10.0]);
+        self.known("calibration.time.speed_m_s", time.speed_m_s.as_ref(), [0.0, 30.0]);
+        self.known("calibration.time.stride_time_s", time.stride_time_s.as_ref(), [0.0, 10.0]);
+        for (i, interval) in time.intervals_s.iter().flatten().enumerate() {
+            let good = *interval > 0.0 && *interval <= 10.0;
+            self.check(
+                good,
+                None,
+                &format!("calibration.time.intervals_s[{i}]"),
+                "must be more than 0 and at most 10 s: two panels cannot have the same time",
+            );
+        }
+        let given = match time.driven_by {
+            TimeSource::Interval => time.interval_s.is_some(),
+            TimeSource::Speed => time.speed_m_s.is_some(),
+            TimeSource::StrideTime => time.stride_time_s.is_some(),
+        };
+        self.check(given, None, "calibration.time.driven_by", "names a source that is not given");
+    }
+
+    fn images(&mut self, manifest: &Manifest, manifest_path: &Path) -> ImageCheck {
+        let mut check = ImageCheck::Verified;
+        for (i, image) in manifest.images.iter().enumerate() {
+            match hash_file(&image_path(manifest_path, &image.file)) {
+                Err(_) => check = ImageCheck::Absent,
+                Ok(hash) if hash == image.sha256 => {}
+                Ok(hash) => self.add(
+                    None,
+                    format!("images[{i}].sha256"),
+                    format!("{} has hash {hash}: it is another image than the one annotated; get the right file or move this one away", image.file),
+                ),
+            }
+        }
+        check
+    }
+
+    fn annotation(&mut self, annotation: &Annotation, manifest: &Manifest) {
+        let hashes: Vec<&String> = manifest.images.iter().map(|image| &image.sha256).collect();
+        let same = annotation.images_sha256.iter().eq(hashes);
+        self.check(
+            same,
+            None,
+            "images_sha256",
+            "differs from the manifest's: the points were placed on other images",
+        );
+        for (field, sd) in
+            [("visible_sd_px", annotation.visible_sd_px), ("occluded_sd_px", annotation.occluded_sd_px)]
+        {
+            self.check(sd > 0.0 && sd <= 1000.0, None, field, "must be more than 0 and at most 1000 px");
+        }
+        let span = annotation.stride;
+        self.check(span.first < span.last, None, "stride", "first must come before last");
+        if let Some(closes) = span.closes_after_panels {
+            self.check(
+                (2.0..=1000.0).contains(&closes),
+                None,
+                "stride.closes_after_panels",
+                "must be between 2 and 1000 panels",
+            );
+        }
+        let mut last = 0;
+        for panel in &annotation.panels {
+            self.check(
+                panel.panel > last,
+                Some(panel.panel),
+                "panel",
+                "panel numbers must rise without repeats",
+            );
+            last = panel.panel;
+            self.panel(panel, manifest);
+        }
+        let used = annotation
+            .panels
+            .iter()
+            .filter(|p| p.usage == PanelUse::Stride && (span.first..=span.last).contains(&p.panel));
+        let n = used.count();
+        if n < MIN_STRIDE_PANELS {
+            self.add(
+                None,
+                "stride",
+                format!("{n} panels are marked for the stride; a fit needs at least {MIN_STRIDE_PANELS}"),
+            );
+        }
+        if let Some(intervals) = &manifest.calibration.time.intervals_s {
+            let expected = span.last.saturating_sub(span.first) as usize;
+            self.check(
+                intervals.len() == expected,
+                None,
+                "stride",
+                "the manifest's intervals_s must have one entry per gap between the stride's panels",
+            );
+        }
+        for (i, instant) in annotation.instants.iter().enumerate() {
+            let inside = (f64::from(span.first)..=f64::from(span.last)).contains(&instant.at_panel);
+            self.check(inside, None, &format!("instants[{i}].at_panel"), "lies outside the stride");
+        }
+    }
+
+    fn panel(&mut self, panel: &PanelAnnotation, manifest: &Manifest) {
+        let number = Some(panel.panel);
+        let Some(place) = manifest.panels.iter().find(|p| p.panel == panel.panel) else {
+            return self.add(number, "panel", "the manifest has no panel of this number");
+        };
+        let [a, b] = panel.ground_px;
+        let line = a.iter().chain(&b).all(|v| v.is_finite() && v.abs() < 1e6) && b[0] - a[0] > 10.0;
+        self.check(line, number, "ground_px", "needs two points at least 10 px apart, the left one first");
+        for (i, mark) in panel.marks.iter().enumerate() {
+            let repeated = panel.marks[..i].iter().any(|other| other.mark == mark.mark);
+            self.check(!repeated, number, &format!("marks[{i}].mark"), "this mark is placed twice");
+            let good = mark.at_px.iter().all(|v| v.abs() < 1e6) && mark.mark.abs() < 1e4;
+            self.check(
+                good,
+                number,
+                &format!("marks[{i}]"),
+                "must be a mark number and a point of the plate",
+            );
+        }
+        self.keypoints(panel, place);
+    }
+
+    fn keypoints(&mut self, panel: &PanelAnnotation, place: &crate::manifest::Panel) {
+        let number = Some(panel.panel);
+        let mut n = 0;
+        for (keypoint, placed) in panel.keypoints.iter() {
+            let field = format!("keypoints.{keypoint}");
+            match (placed.state, placed.at_px) {
+                (KeypointState::Absent, None) => {}
+                (KeypointState::Absent, Some(_)) => {
+                    self.add(number, field, "is absent but has a place; remove one of the two");
+                }
+                (_, None) => self.add(number, field, "has no place (`at_px`); place it or call it absent"),
+                (_, Some(at)) if !place.contains(at, PANEL_MARGIN_PX) => {
+                    self.add(
+                        number,
+                        field,
+                        format!("{at:?} lies outside the panel; move it or correct the panel's corners"),
+                    );
+                }
+                (_, Some(_)) => n += 1,
+            }
+        }
+        if panel.usage == PanelUse::Stride && n < MIN_POINTS_PER_PANEL {
+            self.add(number, "keypoints", format!("only {n} points are placed; place at least {MIN_POINTS_PER_PANEL} or mark the panel as unused"));
+        }
+    }
+}
+
+fn is_sha256(text: &str) -> bool {
+    text.len() == 64 && text.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b))
+}
+
+/// Signed area of a quadrilateral, positive when its corners run clockwise on the screen.
+fn quad_area(quad: &[[f64; 2]; 4]) -> f64 {
+    (0..4).map(|i| (quad[i], quad[(i + 1) % 4])).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0
+}

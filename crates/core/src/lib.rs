@@ -1,0 +1,32 @@
+//! The run-time half of the toolchain: skeleton, pose, stride, gait and the embedded motion database.
+//!
+//! # Conventions
+//!
+//! SI units throughout: metres, seconds, radians, kilograms; speeds in m/s.
+//! World space is right-handed: X forward, Y up, Z to the horse's right.
+//! A bone's *bend* is its direction minus its parent's, counter-clockwise positive as seen from the horse's
+//! right side (looking along -Z): zero is straight, and the sign is kept, so that a knee never inverts.
+//! Legs are always in the order left fore, right fore, left hind, right hind ([`Limb::ALL`]).
+//! Phase is cyclic in `[0, 1)`; intervals of phase may run through the wrap.
+//! Names carry spaces and units (`point_in_world`, `stride_time_s`); transforms are named `a_from_b`.
+//!
+//! This crate opens no file, reads no clock, starts no thread and uses no randomness: equal inputs give equal bytes.
+//! It depends on glam and serde, and on `serde_json` only to parse the two data files compiled into it.
+
+mod database;
+mod gait;
+mod law;
+mod limb;
+mod pose;
+mod provenance;
+mod skeleton;
+mod stride;
+
+pub use database::{DATABASE_SCHEMA, DataError, Database};
+pub use gait::{Gait, Lead};
+pub use law::{ContactLaw, Interval, LawKind, MPS_PER_MPH, PowerLaw};
+pub use limb::{Limb, Pair, Side};
+pub use pose::{Joints, Pose};
+pub use provenance::{Provenance, SpeedSource};
+pub use skeleton::{BONE_COUNT, Bone, FetlockCoupling, ReciprocalCoupling, SKELETON_SCHEMA, Skeleton, bone};
+pub use stride::{CHANNEL_COUNT, CURVE_SAMPLES, Contact, Curves, Stride};
