@@ -61,12 +61,24 @@ pub struct FetlockCoupling {
     pub stance_bend_rad: f32,
     /// Standard deviation of the loaded bend, radians.
     pub stance_sd_rad: f32,
-    /// Bend of the unloaded fetlock while knee or hock are straight, radians.
-    pub swing_bend_rad: f32,
-    /// Further fold per radian of flexion of knee or hock.
-    pub swing_per_flexion: f32,
     /// Standard deviation of the unloaded bend, radians.
     pub swing_sd_rad: f32,
+    /// Unloaded bend of the fore fetlock.
+    pub fore: SwingFetlock,
+    /// Unloaded bend of the hind fetlock.
+    pub hind: SwingFetlock,
+}
+
+/// Bend of a fetlock in the air: `swing_bend + per_upper * upper + per_cannon * cannon`, the bends from rest of the
+/// limb's second bone (humerus, femur) and of its cannon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwingFetlock {
+    /// Bend while the limb is otherwise at rest, radians (dorsiflexion positive).
+    pub swing_bend_rad: f32,
+    /// Share of the second bone's bend from rest.
+    pub per_upper_bend: f32,
+    /// Share of the cannon's bend from rest.
+    pub per_cannon_bend: f32,
 }
 
 /// A horse's proportions and limits. [`Skeleton::reference`] is compiled in; any other is a file of the same form.
@@ -138,9 +150,27 @@ struct FetlockFile {
     _about: String,
     stance_bend_deg: f32,
     stance_sd_deg: f32,
-    swing_bend_deg: f32,
-    swing_per_flexion: f32,
     swing_sd_deg: f32,
+    fore: SwingFetlockFile,
+    hind: SwingFetlockFile,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SwingFetlockFile {
+    swing_bend_deg: f32,
+    per_upper_bend: f32,
+    per_cannon_bend: f32,
+}
+
+impl SwingFetlockFile {
+    fn coupling(&self) -> SwingFetlock {
+        SwingFetlock {
+            swing_bend_rad: self.swing_bend_deg.to_radians(),
+            per_upper_bend: self.per_upper_bend,
+            per_cannon_bend: self.per_cannon_bend,
+        }
+    }
 }
 
 impl BoneFile {
@@ -248,9 +278,9 @@ impl SkeletonFile {
             fetlock: FetlockCoupling {
                 stance_bend_rad: self.fetlock.stance_bend_deg.to_radians(),
                 stance_sd_rad: self.fetlock.stance_sd_deg.to_radians(),
-                swing_bend_rad: self.fetlock.swing_bend_deg.to_radians(),
-                swing_per_flexion: self.fetlock.swing_per_flexion,
                 swing_sd_rad: self.fetlock.swing_sd_deg.to_radians(),
+                fore: self.fetlock.fore.coupling(),
+                hind: self.fetlock.hind.coupling(),
             },
         }
     }
@@ -297,7 +327,7 @@ mod tests {
     #[test]
     fn bad_skeletons_are_refused_with_the_bone_named() {
         let good = include_str!("../data/horse.json");
-        let bad = good.replacen("\"length_m\": 0.43", "\"length_m\": -0.43", 1);
+        let bad = good.replacen("\"length_m\": 0.42", "\"length_m\": -0.42", 1);
         assert!(Skeleton::from_json(&bad).unwrap_err().to_string().contains("radius"));
         let old = good.replacen("\"schema\": 1", "\"schema\": 7", 1);
         assert!(matches!(Skeleton::from_json(&old), Err(DataError::Schema { found: 7, expected: 1 })));
