@@ -102,8 +102,10 @@ const LINE_WIDTH: usize = 110;
 /// Text of a document: two-space indentation, short lists and objects on one line, fields in declaration order,
 /// numbers as they are (round them before), a line feed at the end.
 pub fn to_stable_json<T: Serialize>(document: &T) -> String {
-    let value = serde_json::to_value(document)
-        .unwrap_or_else(|error| unreachable!("documents hold only string keys: {error}"));
+    // By way of text, which keeps the short form of 32-bit numbers.
+    let value: Value = serde_json::to_string(document)
+        .and_then(|text| serde_json::from_str(&text))
+        .unwrap_or_else(|error| unreachable!("documents hold only string keys and finite numbers: {error}"));
     let mut text = String::new();
     write_value(&value, 0, &mut text);
     text.push('\n');

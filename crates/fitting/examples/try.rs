@@ -18,9 +18,10 @@ fn main(){
  let r=f.residuals_of(&obs);
  println!("rms px {:.2} m {:.4} withers {:.3}",rms(r.iter().map(|r|r.px())),rms(r.iter().map(|r|r.metres())),f.withers_height_m(&sk));
  for kp in Keypoint::all(){let v:Vec<_>=r.iter().filter(|r|r.keypoint==kp).collect(); println!("{:18} {:5.2} {}",kp.name(),rms(v.iter().map(|r|r.px())),v.iter().map(|r|format!("{:5.1}",r.px())).collect::<Vec<_>>().join(" "));}
- for b in 0..18{let bb=[0,1,2,3,4,5,6,7,8,9,10,11,12,18,19,20,21,22][b]; println!("{:12} ref {:.3} fit {:.3} {:+.2}",sk.bones[bb].name,sk.bones[bb].length_m,f.problem.chain_length(bb,f.shared()),f.shared()[b]);} println!("dock {:+.3} scale {:+.3}",f.shared()[18],f.shared()[19]);
+ for b in 0..18{let bb=[0,1,2,3,4,5,6,7,8,9,10,11,12,18,19,20,21,22][b]; println!("{:12} ref {:.3} fit {:.3} {:+.2}",sk.bones[bb].name,sk.bones[bb].length_m,f.problem.bone_length_m(bb,f.shared()),f.shared()[b]);} println!("dock {:+.3} scale {:+.3}",f.shared()[18],f.shared()[19]);
  ho(&f,&w,&sk);
  bends(&f);
+ cont(&f);
  // dump
  let ks=f.kinematics(); let mut out=String::from("{");
  for (slot,k) in ks.iter().enumerate(){ let p=obs.panels[f.problem.order[slot]].camera.panel; out+=&format!("{}\"{}\":[",if slot>0{","}else{""},p);
@@ -39,4 +40,10 @@ fn bends(f:&StrideFit){
   let abs:f64=p[2]+ if limb.index()<2 {p[3]+p[4]+p[5]+p[6]} else {0.0} +p[b]+p[b+1]+p[b+2]+p[b+3];
   println!("  ph {:.2} panel {:2} {:?} root {:6.1} upper {:6.1} mid {:6.1} cannon {:6.1} hoof {:6.1}  cannonabs {:6.1}",f.problem.phases[slot],o.camera.panel,o.contacts[limb.index()],d(0),d(1),d(2),d(3),d(4),abs.to_degrees()); } }
  for slot in 0..f.problem.layout.panels{ let p=f.pose(slot); let a:f64=(p[2]+(3..11).map(|i|p[i]).sum::<f64>()).to_degrees(); println!("head abs {:.1} pitch {:.1} spine {:?}",a,p[2].to_degrees(),(3..11).map(|i|(p[i].to_degrees()).round()).collect::<Vec<_>>());}
+}
+fn cont(f:&StrideFit){
+ let c=muybridge_fitting::contacts::find_contacts(f,&[],1.527).unwrap(); let t=f.stride_time.seconds;
+ for x in &c{println!("{:?} strike {:.3}±{:.3} off {:.3}±{:.3} stance {:.4}s ±{:.4} duty {:.3}",x.limb,x.strike.phase,x.strike.sd,x.lift_off.phase,x.lift_off.sd,x.duty_factor()*t,x.duty_factor_sd()*t,x.duty_factor());}
+ let g=muybridge_fitting::gait_analysis::GaitAnalysis::new(c,[t,f.stride_time.sd_s]);
+ println!("{:?} lead {:?} order {:?} duty {:.3} lag {:.3} susp {:?} support {:?} fore {:?} hind {:?}",g.implied,g.lead,g.footfall_order(),g.hind_duty_factor(),g.lateral_lag(),g.suspensions,g.support_s(),g.stance_s(Pair::Fore),g.stance_s(Pair::Hind));
 }

@@ -1,11 +1,20 @@
 //! From annotated plates to fitted strides, contacts, gait laws, the motion database and the report.
 
 pub mod chain;
+pub mod contacts;
+pub mod expansion;
+pub mod gait_analysis;
 pub mod held_out;
+pub mod law;
 pub mod layout;
 pub mod levenberg;
+pub mod motion_database;
 pub mod normal_matrix;
 pub mod observation;
+pub mod periodic;
+pub mod pipeline;
 pub mod problem;
+pub mod published;
+pub mod stride_curves;
 pub mod stride_fit;
 pub mod weights;

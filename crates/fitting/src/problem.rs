@@ -354,7 +354,7 @@ impl StrideProblem {
     }
 
     /// Length of a bone, m.
-    pub fn chain_length(&self, bone: usize, shared: &[f64]) -> f64 {
+    pub fn bone_length_m(&self, bone: usize, shared: &[f64]) -> f64 {
         self.chain.length_m(bone, shared)
     }
 

@@ -72,6 +72,13 @@ impl StrideFit {
         &self.optimum.x[self.problem.layout.panel(slot, 0)..][..PANEL_DOF]
     }
 
+    /// Strides since the first panel at which a slot's panel was taken; its fraction is the slot's phase.
+    pub fn turns(&self, slot: usize) -> f64 {
+        let panels = &self.observation.panels;
+        let start_s = panels.first().map_or(0.0, |p| p.camera.time_s);
+        (panels[self.problem.order[slot]].camera.time_s - start_s) / self.stride_time.seconds
+    }
+
     /// The shared lengths.
     pub fn shared(&self) -> &[f64] {
         &self.optimum.x[self.problem.layout.shared(0)..]
