@@ -101,7 +101,7 @@ impl PanelCamera {
 /// A calibrated plate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlateCalibration {
-    /// Cameras of the panels used, in order of time; standing panels last, with the time NaN-free zero.
+    /// Cameras of the stride's panels, in order of time.
     pub stride: Vec<PanelCamera>,
     /// Cameras of the standing panels; their `time_s` is zero and means nothing.
     pub standing: Vec<PanelCamera>,
@@ -215,7 +215,8 @@ impl<'a> Context<'a> {
         match &self.manifest.calibration.position {
             Position::FixedCamera => Ok((centre, AxisOrigin::At(0.0))),
             Position::FixedMark { mark } => {
-                let at = panel.marks.iter().find(|m| m.mark == *mark).map(|m| ground.along_and_above(m.at_px)[0]);
+                let at =
+                    panel.marks.iter().find(|m| m.mark == *mark).map(|m| ground.along_and_above(m.at_px)[0]);
                 let at = at.ok_or(CalibrationError::NoMark { panel: panel.panel, mark: *mark })?;
                 Ok((centre, AxisOrigin::PxFromAxis(at - centre)))
             }

@@ -5,7 +5,7 @@ use muybridge_core::SpeedSource;
 use crate::annotation::PanelAnnotation;
 use crate::calibration::{CalibrationError, Context, Disagreement, Estimate, PanelCamera};
 use crate::keypoint::{BodyPoint, Keypoint};
-use crate::manifest::{Known, TimeSource};
+use crate::manifest::{Known, Position, TimeSource};
 
 /// Trunk points that ride with the body; head and neck nod.
 const TRUNK: [BodyPoint; 4] = [BodyPoint::Withers, BodyPoint::Back, BodyPoint::Croup, BodyPoint::Dock];
@@ -66,6 +66,18 @@ pub(crate) fn panel_times(
             other: ("stated interval".into(), other),
         });
     }
+    if let (TimeSource::Speed, Some(interval), Position::CameraSpacing { spacing_m, .. }) =
+        (time.driven_by, stated_interval, &context.manifest.calibration.position)
+    {
+        let value = spacing_m.value / interval.value;
+        let sd = value * relative_sd(Some(spacing_m)).hypot(interval.sd / interval.value);
+        let other = ("camera spacing over the stated interval".to_string(), Estimate { value, sd });
+        disagreements.push(Disagreement {
+            quantity: "speed, m/s",
+            used: ("stated speed".into(), speed_m_s),
+            other,
+        });
+    }
     if let (TimeSource::Interval, Some(other)) = (time.driven_by, stated_speed) {
         let used = ("distance per panel over the stated interval".to_string(), speed_m_s);
         disagreements.push(Disagreement {
@@ -74,8 +86,7 @@ pub(crate) fn panel_times(
             other: ("stated speed".into(), other),
         });
     }
-    if let crate::manifest::Position::CameraSpacing { spacing_m, .. } = &context.manifest.calibration.position
-    {
+    if let Position::CameraSpacing { spacing_m, .. } = &context.manifest.calibration.position {
         let per_panel = distance_m / gaps;
         disagreements.push(Disagreement {
             quantity: "distance per panel, m",

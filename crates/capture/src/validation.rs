@@ -235,6 +235,14 @@ impl Faults {
             }
             _ => {}
         }
+        let from_stance = matches!(length.map(|l| &l.plane), Some(Plane::Wall(Parallax::FromStance)));
+        let battery = matches!(calibration.position, Position::CameraSpacing { .. });
+        self.check(
+            battery || !from_stance,
+            None,
+            "calibration.scale.known_length.plane.wall",
+            "from_stance needs position.kind camera_spacing; give distances or a ratio",
+        );
         let given = match scale.driven_by {
             ScaleSource::KnownLength => scale.known_length.is_some(),
             ScaleSource::WithersHeight => scale.withers_height_m.is_some(),

@@ -28,5 +28,7 @@ pub use law::{ContactLaw, Interval, LawKind, MPS_PER_MPH, PowerLaw};
 pub use limb::{Limb, Pair, Side};
 pub use pose::{Joints, Pose};
 pub use provenance::{Provenance, SpeedSource};
-pub use skeleton::{BONE_COUNT, Bone, FetlockCoupling, ReciprocalCoupling, SKELETON_SCHEMA, Skeleton, SwingFetlock, bone};
+pub use skeleton::{
+    BONE_COUNT, Bone, FetlockCoupling, ReciprocalCoupling, SKELETON_SCHEMA, Skeleton, SwingFetlock, bone,
+};
 pub use stride::{CHANNEL_COUNT, CURVE_SAMPLES, Contact, Curves, Stride};

@@ -5,7 +5,9 @@
 
 use muybridge_core::{BONE_COUNT, Limb, Skeleton, bone};
 
-use crate::layout::{BENDS, LOG_DOCK, LOG_SCALE, PANEL_DOF, PITCH, ROOT_X, ROOT_Y, SHARED, SLIDES, log_length};
+use crate::layout::{
+    BENDS, LOG_DOCK, LOG_SCALE, PANEL_DOF, PITCH, ROOT_X, ROOT_Y, SHARED, SLIDES, log_length,
+};
 
 /// A vector of the sagittal plane: forward, up.
 pub(crate) type Vec2 = [f64; 2];
@@ -254,7 +256,11 @@ mod tests {
             for i in 0..PANEL_DOF + SHARED {
                 let moved = |h: f64| {
                     let (mut pose, mut shared) = (pose.clone(), shared.clone());
-                    if i < PANEL_DOF { pose[i] += h } else { shared[i - PANEL_DOF] += h }
+                    if i < PANEL_DOF {
+                        pose[i] += h
+                    } else {
+                        shared[i - PANEL_DOF] += h
+                    }
                     chain.kinematics(&pose, &shared).place(point)
                 };
                 let (a, b) = (moved(1e-6), moved(-1e-6));
@@ -274,10 +280,16 @@ mod tests {
             Unknown::Panel(i) => i,
             Unknown::Shared(i) => PANEL_DOF + i,
         };
-        for point in [Attachment::Tip(Limb::RF.hoof_bone()), Attachment::Tip(Limb::LH.hoof_bone()), Attachment::Dock] {
+        for point in
+            [Attachment::Tip(Limb::RF.hoof_bone()), Attachment::Tip(Limb::LH.hoof_bone()), Attachment::Dock]
+        {
             let gradient = |at: usize, h: f64| {
                 let (mut pose, mut shared) = (pose.clone(), shared.clone());
-                if at < PANEL_DOF { pose[at] += h } else { shared[at - PANEL_DOF] += h }
+                if at < PANEL_DOF {
+                    pose[at] += h
+                } else {
+                    shared[at - PANEL_DOF] += h
+                }
                 let mut g = vec![0.0; n];
                 let k = chain.kinematics(&pose, &shared);
                 chain.derivatives(&k, point, |u, [dx, dy]| g[flat(u)] += pull[0] * dx + pull[1] * dy);
@@ -295,7 +307,11 @@ mod tests {
                 let (plus, minus) = (gradient(a, 1e-6), gradient(a, -1e-6));
                 for b in 0..n {
                     let numeric = (plus[b] - minus[b]) / 2e-6;
-                    assert!((numeric - analytic[a][b]).abs() < 1e-8, "{point:?} {a} {b}: {numeric} {}", analytic[a][b]);
+                    assert!(
+                        (numeric - analytic[a][b]).abs() < 1e-8,
+                        "{point:?} {a} {b}: {numeric} {}",
+                        analytic[a][b]
+                    );
                 }
             }
         }

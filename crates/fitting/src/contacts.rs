@@ -123,8 +123,10 @@ fn leg_contact(
     instants: &[Instant],
     withers_height_m: f64,
 ) -> Result<LegContact, ContactError> {
-    let run = stance_run(fit, limb).or_else(|| lowest_run(paths, limb)).ok_or(ContactError::NeverDown(limb))?;
-    if run.swing_before >= run.first || run.first - run.swing_before + run.swing_after - run.last > 1.0 + 1e-9 {
+    let run =
+        stance_run(fit, limb).or_else(|| lowest_run(paths, limb)).ok_or(ContactError::NeverDown(limb))?;
+    if run.swing_before >= run.first || run.first - run.swing_before + run.swing_after - run.last > 1.0 + 1e-9
+    {
         return Err(ContactError::AlwaysDown(limb));
     }
     // Where the toe rests: the mean over the stance panels.
@@ -153,8 +155,10 @@ fn leg_contact(
             None => ContactInstant { phase: to_swing.rem_euclid(1.0), sd: widest },
         }
     };
-    let strike = by_hand(fit, limb, Event::Strike, instants).unwrap_or_else(|| instant(run.first, run.swing_before));
-    let lift_off = by_hand(fit, limb, Event::LiftOff, instants).unwrap_or_else(|| instant(run.last, run.swing_after));
+    let strike =
+        by_hand(fit, limb, Event::Strike, instants).unwrap_or_else(|| instant(run.first, run.swing_before));
+    let lift_off =
+        by_hand(fit, limb, Event::LiftOff, instants).unwrap_or_else(|| instant(run.last, run.swing_after));
     Ok(LegContact { limb, strike, lift_off })
 }
 

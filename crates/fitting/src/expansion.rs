@@ -5,7 +5,7 @@
 //! or hip is scaled by `D'/D` along the track and over the ground, the stance toe stands still, and the leg is solved
 //! anew by damped least squares.
 
-use muybridge_core::{CURVE_SAMPLES, Contact, Limb, Pair, PowerLaw, Pose, Provenance, Skeleton, Stride};
+use muybridge_core::{CURVE_SAMPLES, Contact, Limb, Pair, Pose, PowerLaw, Provenance, Skeleton, Stride};
 use nalgebra::{Matrix2, SMatrix, Vector2};
 
 /// Damping of the leg solution, m per rad: large enough to stay calm at full stretch, small against a leg of a metre.
@@ -15,10 +15,15 @@ const WILLING: [f64; 5] = [0.3, 1.0, 1.0, 1.0, 1.0];
 /// Solver steps per sample; errors fall by more than half at each.
 const STEPS: usize = 40;
 /// A toe farther than this from its wanted place after solving makes the speed unreachable, m.
-const REACH_TOLERANCE_M: f64 = 0.01;
+const REACH_TOLERANCE_M: f64 = 0.015;
 
 /// A captured stride at another speed, under the stance laws of fore and hind limbs; none where a leg cannot reach.
-pub fn expand(captured: &Stride, reference: &Skeleton, laws: [PowerLaw; 2], speed_m_s: f64) -> Option<Stride> {
+pub fn expand(
+    captured: &Stride,
+    reference: &Skeleton,
+    laws: [PowerLaw; 2],
+    speed_m_s: f64,
+) -> Option<Stride> {
     let timing = Timing::new(captured, laws, speed_m_s);
     let skeleton = captured.skeleton(reference);
     let mut stride = captured.clone();
@@ -28,7 +33,10 @@ pub fn expand(captured: &Stride, reference: &Skeleton, laws: [PowerLaw; 2], spee
     stride.curves.surge_m.iter_mut().for_each(|surge| *surge *= timing.mean_step_ratio as f32);
     stride.provenance = Provenance::Derived {
         from: vec![captured.id.clone()],
-        how: format!("expanded from {:.1} to {speed_m_s:.1} m/s by its gait's stance laws", captured.speed_m_s),
+        how: format!(
+            "expanded from {:.1} to {speed_m_s:.1} m/s by its gait's stance laws",
+            captured.speed_m_s
+        ),
     };
     let stride_length_m = speed_m_s * timing.stride_time_s;
     for limb in Limb::ALL {

@@ -125,7 +125,8 @@ impl GaitAnalysis {
         let symmetrical = [(Limb::LH, Limb::RH), (Limb::LF, Limb::RF)]
             .iter()
             .all(|(a, b)| (apart(*a, *b) - 0.5).abs() < SYMMETRY_TOLERANCE);
-        let second = |left: Limb, right: Limb| if apart(left, right) < 0.5 { Side::Right } else { Side::Left };
+        let second =
+            |left: Limb, right: Limb| if apart(left, right) < 0.5 { Side::Right } else { Side::Left };
         let lead = (!symmetrical)
             .then(|| Lead { fore: second(Limb::LF, Limb::RF), hind: second(Limb::LH, Limb::RH) });
         let mut analysis =

@@ -93,8 +93,14 @@ pub fn fit_log_law(points: &[ContactPoint]) -> Option<LawFit> {
     let b = logs.iter().map(|(x, y)| (x - mx) * (y - my)).sum::<f64>() / sxx;
     let ln_a = my - b * mx;
     let curve = PowerLaw { a: ln_a.exp(), b };
-    let mut fit =
-        LawFit { curve, n: points.len(), interval: None, standard_errors: None, r_squared: None, covariance: None };
+    let mut fit = LawFit {
+        curve,
+        n: points.len(),
+        interval: None,
+        standard_errors: None,
+        r_squared: None,
+        covariance: None,
+    };
     if points.len() > 2 {
         let rest: f64 = logs.iter().map(|(x, y)| (y - ln_a - b * x).powi(2)).sum();
         let total: f64 = logs.iter().map(|(_, y)| (y - my).powi(2)).sum();
@@ -164,7 +170,11 @@ fn gauss_newton(points: &[ContactPoint], weights: &[f64], start: PowerLaw) -> Op
     Some(curve)
 }
 
-fn normal_equations(points: &[ContactPoint], weights: &[f64], curve: PowerLaw) -> (Matrix2<f64>, Vector2<f64>) {
+fn normal_equations(
+    points: &[ContactPoint],
+    weights: &[f64],
+    curve: PowerLaw,
+) -> (Matrix2<f64>, Vector2<f64>) {
     let mut normal = Matrix2::zeros();
     let mut right = Vector2::zeros();
     for (point, weight) in points.iter().zip(weights) {
@@ -177,15 +187,15 @@ fn normal_equations(points: &[ContactPoint], weights: &[f64], curve: PowerLaw) -
 
 fn with_statistics(points: &[ContactPoint], weights: &[f64], curve: PowerLaw) -> LawFit {
     let n = points.len();
-    let weighted = |f: &dyn Fn(&ContactPoint) -> f64| -> f64 {
-        points.iter().zip(weights).map(|(p, w)| w * f(p)).sum()
-    };
+    let weighted =
+        |f: &dyn Fn(&ContactPoint) -> f64| -> f64 { points.iter().zip(weights).map(|(p, w)| w * f(p)).sum() };
     let mass: f64 = weights.iter().sum();
     let mean = weighted(&|p| p.contact_time_s) / mass;
     let rest = weighted(&|p| residual(curve, p).powi(2));
     let total = weighted(&|p| (p.contact_time_s - mean).powi(2));
     let variance = rest / (n as f64 - 2.0);
-    let covariance = normal_equations(points, weights, curve).0.try_inverse().map(|inverse| inverse * variance);
+    let covariance =
+        normal_equations(points, weights, curve).0.try_inverse().map(|inverse| inverse * variance);
     let errors = covariance.map(|c| [c[(0, 0)].sqrt(), c[(1, 1)].sqrt()]);
     let t = t_quantile(n);
     LawFit {
@@ -214,12 +224,20 @@ mod tests {
     #[test]
     fn four_points_agree_with_other_statistics_programs() {
         let mps = muybridge_core::MPS_PER_MPH;
-        let data = points(&[(3.0 * mps, 1.36865), (5.0 * mps, 0.95), (15.0 * mps, 0.339225), (11.0 * mps, 0.427778)]);
+        let data = points(&[
+            (3.0 * mps, 1.36865),
+            (5.0 * mps, 0.95),
+            (15.0 * mps, 0.339225),
+            (11.0 * mps, 0.427778),
+        ]);
         let fit = fit_law(&data).unwrap();
         let [sa, sb] = fit.standard_errors.unwrap();
-        for (found, expected) in
-            [(fit.curve.a, FOUR_POINT[0]), (fit.curve.b, FOUR_POINT[1]), (sa, FOUR_POINT[2]), (sb, FOUR_POINT[3])]
-        {
+        for (found, expected) in [
+            (fit.curve.a, FOUR_POINT[0]),
+            (fit.curve.b, FOUR_POINT[1]),
+            (sa, FOUR_POINT[2]),
+            (sb, FOUR_POINT[3]),
+        ] {
             assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
         }
     }

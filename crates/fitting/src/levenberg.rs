@@ -7,7 +7,9 @@
 //! Madsen, Nielsen & Tingleff, *Methods for Non-Linear Least Squares Problems* (2004), Algorithm 3.16 (damping);
 //! Kanzow, Yamashita & Fukushima (2004) (projection onto the box).
 
-use argmin::core::{Error, Executor, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus};
+use argmin::core::{
+    Error, Executor, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus,
+};
 
 use crate::normal_matrix::NormalMatrix;
 
@@ -76,8 +78,14 @@ type Iterate = IterState<Vec<f64>, (), (), (), (), f64>;
 
 impl BoundedLevenbergMarquardt {
     /// One accepted step, or convergence: refused steps are repeated inside with more damping.
-    fn step<P: LeastSquares>(&mut self, problem: &mut Problem<P>, x: Vec<f64>) -> Result<(Vec<f64>, f64), Error> {
-        let Some(damped) = self.state.as_mut() else { return Err(argmin::argmin_error!(NotInitialized, "init was not called")) };
+    fn step<P: LeastSquares>(
+        &mut self,
+        problem: &mut Problem<P>,
+        x: Vec<f64>,
+    ) -> Result<(Vec<f64>, f64), Error> {
+        let Some(damped) = self.state.as_mut() else {
+            return Err(argmin::argmin_error!(NotInitialized, "init was not called"));
+        };
         let bounds = problem.problem("bounds_count", |p| Ok(p.bounds().to_vec()))?;
         let pinned: Vec<bool> = (0..x.len()).map(|i| pins(x[i], damped.at.gradient[i], bounds[i])).collect();
         let right: Vec<f64> =
@@ -90,8 +98,12 @@ impl BoundedLevenbergMarquardt {
                 continue;
             };
             let step = factor.solve(&right);
-            let next: Vec<f64> =
-                x.iter().zip(&step).zip(&bounds).map(|((x, d), [low, high])| (x + d).clamp(*low, *high)).collect();
+            let next: Vec<f64> = x
+                .iter()
+                .zip(&step)
+                .zip(&bounds)
+                .map(|((x, d), [low, high])| (x + d).clamp(*low, *high))
+                .collect();
             let moved: Vec<f64> = next.iter().zip(&x).map(|(a, b)| a - b).collect();
             let predicted = predicted_decrease(&damped.at, &moved);
             let cost = problem.problem("cost_count", |p| Ok(p.cost(&next)))?;
@@ -105,7 +117,16 @@ impl BoundedLevenbergMarquardt {
                 damped.refuse();
                 continue;
             }
-            if std::env::var("LMT").is_ok(){eprintln!("cost {:.6} dec {:.3e} pred {:.3e} lam {:.1e} pinned {}",cost,decrease,predicted,damped.damping,pinned.iter().filter(|p|**p).count());}
+            if std::env::var("LMT").is_ok() {
+                eprintln!(
+                    "cost {:.6} dec {:.3e} pred {:.3e} lam {:.1e} pinned {}",
+                    cost,
+                    decrease,
+                    predicted,
+                    damped.damping,
+                    pinned.iter().filter(|p| **p).count()
+                );
+            }
             damped.accept(decrease / predicted);
             damped.converged = decrease <= tiny;
             let near = decrease < FULL_CURVATURE_BELOW * cost;
@@ -145,7 +166,9 @@ impl<P: LeastSquares> Solver<P, Iterate> for BoundedLevenbergMarquardt {
     }
 
     fn init(&mut self, problem: &mut Problem<P>, mut state: Iterate) -> Result<(Iterate, Option<KV>), Error> {
-        let Some(mut x) = state.take_param() else { return Err(argmin::argmin_error!(NotInitialized, "no start")) };
+        let Some(mut x) = state.take_param() else {
+            return Err(argmin::argmin_error!(NotInitialized, "no start"));
+        };
         let at = problem.problem("linearize_count", |p| {
             for (value, [low, high]) in x.iter_mut().zip(p.bounds()) {
                 *value = value.clamp(*low, *high);
@@ -158,8 +181,14 @@ impl<P: LeastSquares> Solver<P, Iterate> for BoundedLevenbergMarquardt {
         Ok((state.param(x).cost(cost), None))
     }
 
-    fn next_iter(&mut self, problem: &mut Problem<P>, mut state: Iterate) -> Result<(Iterate, Option<KV>), Error> {
-        let Some(x) = state.take_param() else { return Err(argmin::argmin_error!(NotInitialized, "no iterate")) };
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<P>,
+        mut state: Iterate,
+    ) -> Result<(Iterate, Option<KV>), Error> {
+        let Some(x) = state.take_param() else {
+            return Err(argmin::argmin_error!(NotInitialized, "no iterate"));
+        };
         let (x, cost) = self.step(problem, x)?;
         Ok((state.param(x).cost(cost), None))
     }
@@ -191,7 +220,9 @@ pub fn solve<P: LeastSquares>(problem: P, start: Vec<f64>) -> Optimum {
         .configure(|state: Iterate| state.param(start).max_iters(MAX_STEPS))
         .timer(false)
         .run()
-        .unwrap_or_else(|error| unreachable!("cost and derivatives of a validated stride are total: {error}"));
+        .unwrap_or_else(|error| {
+            unreachable!("cost and derivatives of a validated stride are total: {error}")
+        });
     let mut state = result.state;
     let converged = matches!(
         state.get_termination_status(),

@@ -3,6 +3,7 @@
 pub mod chain;
 pub mod contacts;
 pub mod expansion;
+pub mod fit_document;
 pub mod gait_analysis;
 pub mod held_out;
 pub mod law;
@@ -15,6 +16,8 @@ pub mod periodic;
 pub mod pipeline;
 pub mod problem;
 pub mod published;
+mod random;
 pub mod stride_curves;
 pub mod stride_fit;
+pub mod synthetic;
 pub mod weights;

@@ -47,7 +47,12 @@ pub fn gait_laws(fits: &[PlateFit]) -> Vec<GaitLaw> {
     laws
 }
 
-fn captured_law(gait: Gait, kind: LawKind, fits: &[&PlateFit], printed: Option<&ContactLaw>) -> Option<GaitLaw> {
+fn captured_law(
+    gait: Gait,
+    kind: LawKind,
+    fits: &[&PlateFit],
+    printed: Option<&ContactLaw>,
+) -> Option<GaitLaw> {
     let points: Vec<ContactPoint> = fits
         .iter()
         .map(|fit| match kind {
@@ -82,7 +87,12 @@ fn captured(fits: &[&PlateFit]) -> Provenance {
 }
 
 /// The curve a single capture borrows its shape from.
-fn parent_law(gait: Gait, kind: LawKind, withers_height_m: f64, printed: Option<&ContactLaw>) -> (PowerLaw, String) {
+fn parent_law(
+    gait: Gait,
+    kind: LawKind,
+    withers_height_m: f64,
+    printed: Option<&ContactLaw>,
+) -> (PowerLaw, String) {
     match (kind, gait, printed) {
         (LawKind::Support, _, Some(law)) => (law.curve, published::SOURCE.to_string()),
         (LawKind::LimbFore, Gait::Gallop, _) => {
@@ -94,7 +104,10 @@ fn parent_law(gait: Gait, kind: LawKind, withers_height_m: f64, printed: Option<
         _ => {
             // Leg length from the withers height as in the pipeline's stance sweep.
             let a = 0.80 * (0.77 * withers_height_m).powf(0.84);
-            (PowerLaw { a, b: -0.87 }, "one limb's stance across species (Hoyt, Wickler & Cogger 2000)".to_string())
+            (
+                PowerLaw { a, b: -0.87 },
+                "one limb's stance across species (Hoyt, Wickler & Cogger 2000)".to_string(),
+            )
         }
     }
 }
@@ -117,7 +130,9 @@ pub fn build_database(fits: &[PlateFit], skeleton: &Skeleton) -> Database {
 /// The stride at every whole mile per hour of its gait's range, where the limb laws are known.
 fn expanded_strides(captured: &Stride, laws: &[ContactLaw], skeleton: &Skeleton) -> Vec<Stride> {
     let curve = |kind| laws.iter().find(|l| l.gait == captured.gait && l.law == kind).map(|l| l.curve);
-    let (Some(fore), Some(hind)) = (curve(LawKind::LimbFore), curve(LawKind::LimbHind)) else { return Vec::new() };
+    let (Some(fore), Some(hind)) = (curve(LawKind::LimbFore), curve(LawKind::LimbHind)) else {
+        return Vec::new();
+    };
     let Some([low, high]) = captured.gait.speed_range_mph() else { return Vec::new() };
     (low as u32..=high as u32)
         .filter_map(|mph| {
@@ -160,7 +175,9 @@ pub fn captured_stride(fit: &PlateFit) -> Stride {
         speed_m_s: fit.calibration.speed_m_s.value as f32,
         stride_time_s: fit.fit.stride_time.seconds as f32,
         withers_height_m: fit.withers_height_m as f32,
-        bone_lengths_m: (0..BONE_COUNT).map(|bone| fit.fit.problem.bone_length_m(bone, shared) as f32).collect(),
+        bone_lengths_m: (0..BONE_COUNT)
+            .map(|bone| fit.fit.problem.bone_length_m(bone, shared) as f32)
+            .collect(),
         contacts,
         prints_m,
         curves: Curves {
@@ -185,7 +202,8 @@ fn round(value: f32) -> f32 {
 fn round_stride(stride: &mut Stride) {
     let curves = &mut stride.curves;
     let scalars = [&mut stride.speed_m_s, &mut stride.stride_time_s, &mut stride.withers_height_m];
-    let lists = [&mut curves.surge_m, &mut curves.height_m, &mut curves.pitch_rad, &mut stride.bone_lengths_m];
+    let lists =
+        [&mut curves.surge_m, &mut curves.height_m, &mut curves.pitch_rad, &mut stride.bone_lengths_m];
     let rest = curves.bends_rad.iter_mut().chain(&mut curves.scapula_slides_m);
     let numbers = lists.into_iter().chain(rest).flatten();
     for value in scalars.into_iter().chain(numbers).chain(&mut stride.prints_m) {

@@ -1,8 +1,8 @@
 //! What the fit sees: placed points through each panel's camera, contact labels and times.
 
 use muybridge_capture::{
-    BodyPoint, Facing, KEYPOINT_COUNT, Keypoint, KeypointState, NearOff, PanelCamera, Plate, PlateCalibration,
-    StanceLabel,
+    BodyPoint, Facing, KEYPOINT_COUNT, Keypoint, KeypointState, NearOff, PanelCamera, Plate,
+    PlateCalibration, StanceLabel,
 };
 use muybridge_core::{Limb, Side};
 
@@ -89,7 +89,8 @@ impl StrideObservation {
                         state: placed.state,
                     })
                 });
-                let contacts = Limb::ALL.map(|limb| panel.contacts.of(facing.near_off(limb.side()), limb.pair()));
+                let contacts =
+                    Limb::ALL.map(|limb| panel.contacts.of(facing.near_off(limb.side()), limb.pair()));
                 Some(PanelObservation { camera: *camera, points: points.collect(), contacts })
             })
             .collect();

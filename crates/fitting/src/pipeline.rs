@@ -67,7 +67,11 @@ pub enum PlateFailure {
 ///
 /// # Errors
 /// When its documents are wrong, or calibration or contacts cannot be worked out from them.
-pub fn fit_plate(annotation_path: &Path, skeleton: &Skeleton, weights: &Weights) -> Result<PlateFit, PlateFailure> {
+pub fn fit_plate(
+    annotation_path: &Path,
+    skeleton: &Skeleton,
+    weights: &Weights,
+) -> Result<PlateFit, PlateFailure> {
     let plate = Plate::load(annotation_path)?;
     let path = || annotation_path.to_path_buf();
     let calibration = calibrate(&plate.manifest, &plate.annotation)
@@ -172,7 +176,9 @@ impl PlateFit {
         for (pair, name) in [(Pair::Fore, "fore"), (Pair::Hind, "hind")] {
             let sweep = self.stance_sweep_deg(pair);
             if sweep > 90.0 {
-                warnings.push(format!("a {name} limb sweeps {sweep:.0} degrees in stance; more than 90 is not a limb's"));
+                warnings.push(format!(
+                    "a {name} limb sweeps {sweep:.0} degrees in stance; more than 90 is not a limb's"
+                ));
             }
         }
         let [low, high] = duty_factor_range(self.gait());
@@ -180,12 +186,18 @@ impl PlateFit {
             let duty = contact.duty_factor();
             if !(low..=high).contains(&duty) {
                 let limb = contact.limb.abbreviation();
-                warnings.push(format!("duty factor of {limb} is {duty:.2}; a {} has {low} to {high}", self.gait()));
+                warnings.push(format!(
+                    "duty factor of {limb} is {duty:.2}; a {} has {low} to {high}",
+                    self.gait()
+                ));
             }
         }
         let ([froude_low, froude_high], froude) = (froude_range(self.gait()), self.froude());
         if !(froude_low..=froude_high).contains(&froude) {
-            warnings.push(format!("Froude number {froude:.2}; a {} has {froude_low} to {froude_high}", self.gait()));
+            warnings.push(format!(
+                "Froude number {froude:.2}; a {} has {froude_low} to {froude_high}",
+                self.gait()
+            ));
         }
         if !self.fit.optimum.converged {
             warnings.push("the fit stopped before it converged".into());

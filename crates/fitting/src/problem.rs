@@ -66,7 +66,12 @@ pub struct StrideProblem {
 
 impl StrideProblem {
     /// Sets up the fit of an observation with at least four panels, for a stride time in seconds.
-    pub fn new(skeleton: &Skeleton, observation: &StrideObservation, stride_time_s: f64, weights: &Weights) -> Self {
+    pub fn new(
+        skeleton: &Skeleton,
+        observation: &StrideObservation,
+        stride_time_s: f64,
+        weights: &Weights,
+    ) -> Self {
         let start_s = observation.panels.first().map_or(0.0, |p| p.camera.time_s);
         let turns: Vec<f64> =
             observation.panels.iter().map(|p| (p.camera.time_s - start_s) / stride_time_s).collect();
@@ -209,7 +214,8 @@ impl StrideProblem {
         }
         let sd = self.weights.log_length_sd;
         for length in 0..LOG_SCALE {
-            let terms = vec![(self.layout.shared(length), 1.0 / sd), (self.layout.shared(LOG_SCALE), -1.0 / sd)];
+            let terms =
+                vec![(self.layout.shared(length), 1.0 / sd), (self.layout.shared(LOG_SCALE), -1.0 / sd)];
             self.linear.push(LinearRow { terms, constant: 0.0 });
         }
     }
@@ -239,7 +245,8 @@ impl StrideProblem {
                         let sd = f64::from(fetlock.swing_sd_rad);
                         let swing = if limb.pair() == Pair::Fore { fetlock.fore } else { fetlock.hind };
                         let [upper, cannon] = [swing.per_upper_bend, swing.per_cannon_bend].map(f64::from);
-                        let terms = vec![(bend(4), 1.0 / sd), (bend(1), -upper / sd), (bend(3), -cannon / sd)];
+                        let terms =
+                            vec![(bend(4), 1.0 / sd), (bend(1), -upper / sd), (bend(3), -cannon / sd)];
                         let mean = f64::from(swing.swing_bend_rad) - upper * rest(1) - cannon * rest(3);
                         let constant = -mean / sd;
                         LinearRow { terms, constant }
@@ -280,7 +287,12 @@ impl StrideProblem {
     }
 
     /// Visits every nonlinear residual. `derivatives` asks for sparse derivatives as well.
-    fn visit_nonlinear(&self, kinematics: &[Kinematics], derivatives: bool, mut visit: impl FnMut(&Residual<'_>)) {
+    fn visit_nonlinear(
+        &self,
+        kinematics: &[Kinematics],
+        derivatives: bool,
+        mut visit: impl FnMut(&Residual<'_>),
+    ) {
         let mut rows: [Vec<(usize, f64)>; 2] = [Vec::with_capacity(64), Vec::with_capacity(64)];
         for row in &self.points {
             let k = &kinematics[row.slot];
@@ -442,7 +454,13 @@ impl LeastSquares for &StrideProblem {
                 Curvature::Full => {
                     at.normal.add_row(residual.row, bend);
                     for (slot, point, slopes) in residual.carriers {
-                        self.add_turning(&mut at.normal, &kinematics[slot], slot, point, slopes.map(|s| s * slope));
+                        self.add_turning(
+                            &mut at.normal,
+                            &kinematics[slot],
+                            slot,
+                            point,
+                            slopes.map(|s| s * slope),
+                        );
                     }
                 }
             }
@@ -464,7 +482,14 @@ impl LeastSquares for &StrideProblem {
 
 impl StrideProblem {
     /// Adds the part of the second derivative that comes from the joints' turning.
-    fn add_turning(&self, normal: &mut NormalMatrix, k: &Kinematics, slot: usize, point: Attachment, pull: Vec2) {
+    fn add_turning(
+        &self,
+        normal: &mut NormalMatrix,
+        k: &Kinematics,
+        slot: usize,
+        point: Attachment,
+        pull: Vec2,
+    ) {
         if pull == [0.0; 2] {
             return;
         }

@@ -66,7 +66,14 @@ pub fn laws() -> Vec<ContactLaw> {
                 _ => (fit_law(&points)?.curve, SOURCE.to_string()),
             };
             let provenance = Provenance::Published { source };
-            Some(ContactLaw { gait, law: LawKind::Support, curve, n: points.len(), interval: None, provenance })
+            Some(ContactLaw {
+                gait,
+                law: LawKind::Support,
+                curve,
+                n: points.len(),
+                interval: None,
+                provenance,
+            })
         })
         .collect()
 }

@@ -19,7 +19,8 @@ impl<'a> StrideCurves<'a> {
             .map(|dof| {
                 let values: Vec<f64> = (0..problem.layout.panels)
                     .map(|slot| {
-                        let advance = if dof == ROOT_X { fit.turns(slot) * problem.stride_length_m } else { 0.0 };
+                        let advance =
+                            if dof == ROOT_X { fit.turns(slot) * problem.stride_length_m } else { 0.0 };
                         fit.pose(slot)[dof] - advance
                     })
                     .collect();

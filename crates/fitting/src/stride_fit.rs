@@ -101,6 +101,11 @@ impl StrideFit {
         camera.plate_from_world([x, y, depth_m(&self.problem.chain, on, self.observation.facing)])
     }
 
+    /// Distance of a bone towards the camera from the near hooves' plane, m.
+    pub fn bone_depth_m(&self, bone: usize) -> f64 {
+        depth_m(&self.problem.chain, Attachment::Tip(bone), self.observation.facing)
+    }
+
     /// Residuals of the points of another observation of the same panels (or the same one), panel by panel.
     pub fn residuals_of(&self, observation: &StrideObservation) -> Vec<PointResidual> {
         let mut slots: Vec<(usize, Kinematics)> = self.kinematics().into_iter().enumerate().collect();

@@ -1,0 +1,38 @@
+//! `muybridge`: one file a subcommand.
+
+mod annotations;
+mod canvas;
+mod contact_sheet;
+mod repeatability;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::{EXIT_FAILED, report_error};
+
+/// Muybridge's horse plates: look at them, check them, work with what was captured from them.
+#[derive(Debug, Parser)]
+#[command(name = "muybridge", version)]
+pub struct Muybridge {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Look at annotations: `show`, `check`, `compare`.
+    #[command(subcommand)]
+    Annotations(annotations::AnnotationsCommand),
+}
+
+/// Runs the program.
+pub fn run(arguments: &Muybridge) -> ExitCode {
+    let result = match &arguments.command {
+        Command::Annotations(command) => command.run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => report_error(&error, EXIT_FAILED),
+    }
+}
