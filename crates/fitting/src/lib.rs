@@ -16,6 +16,7 @@ pub mod periodic;
 pub mod pipeline;
 pub mod problem;
 pub mod published;
+pub mod report;
 mod random;
 pub mod stride_curves;
 pub mod stride_fit;

@@ -23,9 +23,9 @@ const CAMERA_DISTANCE_M: f64 = 12.0;
 const CAMERA_HEIGHT_M: f64 = 1.1;
 /// Gross outliers lie this far from the point, px.
 const OUTLIER_PX: f64 = 25.0;
-/// The root is carried this much lower than the free swing of the legs would have it, m: a leg at full stretch would
-/// straighten its hock beyond the limit.
-const CROUCH_M: f64 = -0.04;
+/// The croup stands this much higher than where the freely swinging hind legs would set it, m; they stretch by it. More
+/// would straighten a hock beyond its limit, less would fold an elbow beyond its own.
+const STRETCH_M: f64 = 0.025;
 /// Share of the stride over which a toe passes between its free path and its place on the ground.
 const BLEND: f64 = 0.15;
 /// Share of the stride past a stance for which a toe's free path still counts as that of the stance.
@@ -330,7 +330,7 @@ impl Motion {
     }
 
     /// Swings each leg so far that its toe ends a stance where it began it, and sets the root's mean height and pitch
-    /// so that every leg can reach the ground then.
+    /// so that fore and hind legs reach the ground then.
     fn stand_on_the_ground(&mut self) {
         for limb in Limb::ALL {
             for _ in 0..10 {
@@ -343,7 +343,7 @@ impl Motion {
         let fore_m = over_ground[..2].as_flattened().iter().sum::<f64>() / 4.0;
         let hind_m = over_ground[2..].as_flattened().iter().copied().fold(f64::MIN, f64::max);
         let trunk_m: f64 = self.chain.reference_lengths_m[bone::SPINE..=bone::SPINE_LAST].iter().sum();
-        self.standing_height_m -= hind_m + CROUCH_M;
+        self.standing_height_m -= hind_m - STRETCH_M;
         self.pitch.offset -= (fore_m - hind_m) / trunk_m;
     }
 
@@ -437,7 +437,8 @@ impl Motion {
             Pair::Fore => 20f64.to_radians() + 0.5 * turned[3],
             Pair::Hind => (-3f64).to_radians() + 0.5 * turned[1] - 0.6 * turned[3],
         };
-        let load = 0.5 + 0.5 * (TAU * at).cos();
+        // A fetlock is unloaded soon after lift-off.
+        let load = (0.5 + 0.5 * (TAU * at).cos()).powi(2);
         let fetlock = in_the_air + load * (52f64.to_radians() - in_the_air);
         pose[BENDS + first + 4] += fetlock - self.chain.rest_rad[first + 4];
     }

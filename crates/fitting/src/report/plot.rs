@@ -215,7 +215,8 @@ impl Pen<'_> {
             Anchor::End => HPos::Right,
         };
         let font = ("sans-serif", size_px * UNITS_PER_PX * PLOTTERS_FONT_FACTOR).into_text_style(&self.area);
-        let style = font.color(&ink.style(1.0).color).pos(Pos::new(h_pos, VPos::Center));
+        let color = ink.style(1.0).color;
+        let style = font.color(&color).pos(Pos::new(h_pos, VPos::Center));
         self.area.draw(&Text::new(text.to_string(), units(at), style))
     }
 

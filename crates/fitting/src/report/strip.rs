@@ -3,7 +3,7 @@
 use muybridge_capture::{KeypointState, NearOff, StanceLabel};
 use muybridge_core::{Limb, Pair, bone};
 
-use super::page::{escape, figure};
+use super::page::figure;
 use super::plot::{Anchor, Drawn, FULL_WIDTH_PX, Ink, LABEL_PX, Pen, svg};
 use crate::chain::{Attachment, Kinematics};
 use crate::observation::{PanelObservation, attachment, depth_m};
@@ -52,7 +52,7 @@ pub(super) fn strip(fit: &PlateFit) -> String {
             still.draw(pen, [left, cell_px, ground], &to_px)
         })
     });
-    let near = escape(&format!("{:?}", fit.plate.manifest.facing.side(NearOff::Near)).to_lowercase());
+    let near = super::plate::near_side(fit);
     let caption = format!(
         "The fitted skeleton in every panel, in order of time and to one scale; forward is to the right whichever way the \
          animal faces on the plate. Near is the animal&#8217;s {near} side. Dots are the points a person placed, carried to the \
