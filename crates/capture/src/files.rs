@@ -78,22 +78,38 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
 /// field named.
 pub fn read_json<T: DeserializeOwned>(path: &Path, expected_schema: u32) -> Result<T, FileError> {
     let text = read_text(path)?;
-    let parse_error =
-        |field: String, message: String| FileError::Parse { path: path.to_path_buf(), field, message };
     #[derive(serde::Deserialize)]
     struct Head {
         schema: Option<u64>,
     }
-    let head: Head = serde_json::from_str(&text)
-        .map_err(|error| parse_error("document".into(), format!("no valid JSON ({error})")))?;
-    let found =
-        head.schema.ok_or_else(|| parse_error("schema".into(), "missing; is this the right file?".into()))?;
-    if found != u64::from(expected_schema) {
-        return Err(FileError::Schema { path: path.to_path_buf(), found, expected: expected_schema });
+    // Text that has no readable head is no document either, and reading it whole tells where it goes wrong.
+    if let Ok(head) = serde_json::from_str::<Head>(&text) {
+        let missing = || FileError::Parse {
+            path: path.to_path_buf(),
+            field: "schema".into(),
+            message: "missing; is this the right file?".into(),
+        };
+        let found = head.schema.ok_or_else(missing)?;
+        if found != u64::from(expected_schema) {
+            return Err(FileError::Schema { path: path.to_path_buf(), found, expected: expected_schema });
+        }
     }
     let deserializer = &mut serde_json::Deserializer::from_str(&text);
-    serde_path_to_error::deserialize(deserializer)
-        .map_err(|error| parse_error(error.path().to_string(), error.inner().to_string()))
+    let document = serde_path_to_error::deserialize(&mut *deserializer)
+        .map_err(|error| parse_error(path, error.path().to_string(), error.inner()))?;
+    deserializer.end().map_err(|error| parse_error(path, ".".into(), &error))?;
+    Ok(document)
+}
+
+fn parse_error(path: &Path, field: String, error: &serde_json::Error) -> FileError {
+    let message = if error.is_data() {
+        error.to_string()
+    } else {
+        format!("no valid JSON ({error}); correct the text there, or restore the file from version control")
+    };
+    // serde_path_to_error calls the whole document a dot.
+    let field = if field == "." { "document".into() } else { field };
+    FileError::Parse { path: path.to_path_buf(), field, message }
 }
 
 /// Widest line that a list or object may take before it is broken, characters.

@@ -2,11 +2,12 @@
 //!
 //! With camera `i` at `X_i`, a toe seen `e_i` metres ahead of the axis *at the wall's scale* stands at
 //! `X_i + e_i / r`, where `r` is the scale on the track over the scale on the wall. Equal places in two panels of the
-//! same stance give `r = (e_i - e_j) / (X_j - X_i)`; all pairs together, least squares.
+//! same stance give `r = (e_i - e_j) / (X_j - X_i)`; all pairs together by robust least squares, because a toe slips
+//! where it pushes off.
 
 use muybridge_core::Pair;
 
-use crate::annotation::{PanelAnnotation, StanceLabel};
+use crate::annotation::{KeypointState, PanelAnnotation, StanceLabel};
 use crate::calibration::{Context, Estimate};
 use crate::keypoint::{Keypoint, NearOff};
 use crate::line::GroundLine;
@@ -16,11 +17,23 @@ use crate::manifest::{KnownLength, Position};
 /// smaller scale is corrected with this width between them, m (twice the reference horse's hoof offset).
 const HOOF_TRACK_WIDTH_M: f64 = 0.24;
 
+/// Rounds of reweighting; the weights settle to rounding in fewer than twenty.
+const ROUNDS: usize = 40;
+
 /// A toe in stance: place of its panel's camera and px ahead of the axis at wall scale, both metres.
 struct StanceToe {
     panel: u32,
     camera_x_m: f64,
     ahead_m: f64,
+    /// Standard deviation of `ahead_m`.
+    sd_m: f64,
+}
+
+/// Two panels of one stance: camera step, how far the toe fell back against the axis, its standard deviation; metres.
+struct StancePair {
+    step_m: f64,
+    back_m: f64,
+    sd_m: f64,
 }
 
 /// Scale on the track over scale on the wall; none when no hoof is labelled stance and seen in two neighbouring panels.
@@ -40,23 +53,37 @@ pub(crate) fn scale_ratio_from_stance(context: &Context<'_>, length: &KnownLengt
                 })
                 .collect();
             pairs.extend(toes.windows(2).filter_map(|two| match two {
-                [Some(a), Some(b)] if b.panel == a.panel + 1 => {
-                    Some((b.camera_x_m - a.camera_x_m, a.ahead_m - b.ahead_m))
-                }
+                [Some(a), Some(b)] if b.panel == a.panel + 1 => Some(StancePair {
+                    step_m: b.camera_x_m - a.camera_x_m,
+                    back_m: a.ahead_m - b.ahead_m,
+                    sd_m: a.sd_m.hypot(b.sd_m),
+                }),
                 _ => None,
             }));
         }
     }
-    let sxx: f64 = pairs.iter().map(|(dx, _)| dx * dx).sum();
-    let ratio = pairs.iter().map(|(dx, de)| dx * de).sum::<f64>() / sxx;
-    let n = pairs.len() as f64;
+    robust_ratio(&pairs)
+}
+
+/// Ratio of `back_m` to `step_m`, with Cauchy weights at one standard deviation.
+fn robust_ratio(pairs: &[StancePair]) -> Option<Estimate> {
+    let mut ratio = f64::NAN;
+    let mut weights: Vec<f64> = pairs.iter().map(|pair| pair.sd_m.powi(-2)).collect();
+    let chi_sq = |pair: &StancePair, ratio: f64| ((pair.back_m - ratio * pair.step_m) / pair.sd_m).powi(2);
+    for _ in 0..ROUNDS {
+        let sums = pairs.iter().zip(&weights).fold((0.0, 0.0), |(xy, xx), (pair, weight)| {
+            (xy + weight * pair.step_m * pair.back_m, xx + weight * pair.step_m * pair.step_m)
+        });
+        ratio = sums.0 / sums.1;
+        for (weight, pair) in weights.iter_mut().zip(pairs) {
+            *weight = pair.sd_m.powi(-2) / (1.0 + chi_sq(pair, ratio));
+        }
+    }
     if !(ratio.is_finite() && ratio > 0.0) {
         return None;
     }
-    let residual: f64 = pairs.iter().map(|(dx, de)| (de - ratio * dx).powi(2)).sum();
-    // With a single pair nothing is left over to judge by: a toe read to 1 % of the withers height at each end.
-    let sd = if n > 1.0 { (residual / (n - 1.0) / sxx).sqrt() } else { 0.03 };
-    Some(Estimate { value: ratio, sd })
+    let information: f64 = pairs.iter().zip(&weights).map(|(pair, w)| w * pair.step_m * pair.step_m).sum();
+    Some(Estimate { value: ratio, sd: information.powf(-0.5) })
 }
 
 fn stance_toe(
@@ -73,7 +100,8 @@ fn stance_toe(
     }
     let mark_m = length.mark_spacing_m.value;
     let scale = context.mark_scale(panel, mark_m)?;
-    let place = panel.keypoints.place(Keypoint::hoof(side, pair))?;
+    let toe = Keypoint::hoof(side, pair);
+    let place = panel.keypoints.place(toe)?;
     let along_px = GroundLine::through(panel.ground_px).along_and_above(place)[0];
     let camera_x_m = spacing_m * (f64::from(panel.panel) - f64::from(context.annotation.stride.first));
     let facing = context.manifest.facing.sign();
@@ -85,5 +113,9 @@ fn stance_toe(
         NearOff::Off => distance_m / (distance_m + HOOF_TRACK_WIDTH_M),
     };
     let ahead_m = facing * (along_px - axis_px) / (scale.px_per_m * shrink);
-    Some(StanceToe { panel: panel.panel, camera_x_m, ahead_m })
+    let sd_px = match panel.keypoints.get(toe)?.state {
+        KeypointState::Visible => context.annotation.visible_sd_px,
+        KeypointState::Occluded | KeypointState::Absent => context.annotation.occluded_sd_px,
+    };
+    Some(StanceToe { panel: panel.panel, camera_x_m, ahead_m, sd_m: sd_px / scale.px_per_m })
 }

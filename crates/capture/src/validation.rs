@@ -94,6 +94,7 @@ impl Plate {
         let manifest_path = annotation_path.parent().unwrap_or(Path::new(".")).join(relative);
         let manifest: Manifest = read_json(&manifest_path, MANIFEST_SCHEMA)?;
         let mut faults = Faults { path: manifest_path.clone(), found: Vec::new() };
+        faults.identifier(&manifest);
         faults.manifest(&manifest);
         let images = faults.images(&manifest, &manifest_path);
         faults.path = annotation_path.to_path_buf();
@@ -157,6 +158,16 @@ impl Faults {
         }
     }
 
+    /// The identifier names output files and strides, so it must be a plain name, and one manifest's alone.
+    fn identifier(&mut self, manifest: &Manifest) {
+        let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        if manifest.id != stem {
+            let message =
+                format!("is {:?}, but must be the file's name without its extension, {stem:?}", manifest.id);
+            self.add(None, "id", message);
+        }
+    }
+
     fn manifest(&mut self, manifest: &Manifest) {
         self.check(!manifest.images.is_empty(), None, "images", "a plate needs at least one image");
         for (i, image) in manifest.images.iter().enumerate() {
@@ -199,8 +210,9 @@ impl Faults {
                 .iter()
                 .all(|[x, y]| (-1.0..=width + 1.0).contains(x) && (-1.0..=height + 1.0).contains(y));
             self.check(inside, Some(panel.panel), "quad_px", "a corner lies outside the image");
+            let [[left, top], _, [right, bottom], _] = panel.quad_px;
             self.check(
-                quad_area(&panel.quad_px) > 100.0,
+                quad_area(&panel.quad_px) > 100.0 && left < right && top < bottom,
                 Some(panel.panel),
                 "quad_px",
                 "corners must run clockwise from the top left",
@@ -316,6 +328,15 @@ impl Faults {
         }
         let span = annotation.stride;
         self.check(span.first < span.last, None, "stride", "first must come before last");
+        for (end, panel) in [("first", span.first), ("last", span.last)] {
+            let known = manifest.panels.iter().any(|p| p.panel == panel);
+            self.check(
+                known,
+                Some(panel),
+                &format!("stride.{end}"),
+                "the manifest has no panel of this number",
+            );
+        }
         if let Some(closes) = span.closes_after_panels {
             self.check(
                 (2.0..=1000.0).contains(&closes),

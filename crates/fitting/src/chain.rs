@@ -51,15 +51,15 @@ pub(crate) enum Unknown {
 /// The reference skeleton, prepared for the fit.
 #[derive(Clone, Debug)]
 pub struct Chain {
-    parents: [Option<usize>; BONE_COUNT],
+    pub(crate) parents: [Option<usize>; BONE_COUNT],
     pub(crate) reference_lengths_m: [f64; BONE_COUNT],
     pub(crate) rest_rad: [f64; BONE_COUNT],
     pub(crate) limits_rad: [[f64; 2]; BONE_COUNT],
     /// Distance of each tip from the median plane, m, positive to the right.
     pub(crate) lateral_m: [f64; BONE_COUNT],
-    scapula_attachment_m: Vec2,
+    pub(crate) scapula_attachment_m: Vec2,
     pub(crate) slide_limits_m: Vec2,
-    dock_m: Vec2,
+    pub(crate) dock_m: Vec2,
 }
 
 /// A pose worked out: places of all joints in metres.

@@ -147,6 +147,10 @@ fn leg_contact(
         let at = |i: f64| from_stance + (to_swing - from_stance) * i / steps;
         let widest = width / 12f64.sqrt();
         match (0..=steps as usize).map(|i| at(i as f64)).find(|phase| !down(*phase)) {
+            // Not at rest even in the stance panel itself: the label says more than the toe path.
+            Some(phase) if phase == from_stance => {
+                ContactInstant { phase: phase.rem_euclid(1.0), sd: widest }
+            }
             Some(phase) => {
                 let sd = (TOE_SD * withers_height_m / vertical_speed(phase).max(1e-9)).min(widest);
                 ContactInstant { phase: phase.rem_euclid(1.0), sd }

@@ -50,7 +50,7 @@ const GREATEST_DAMPING: f64 = 1e12;
 /// Relative decrease of the cost per step below which the solver stops. Two starts that converge agree to about this.
 const COST_TOLERANCE: f64 = 1e-12;
 /// Once a step gains less than this share of the cost, exact second derivatives take over.
-const FULL_CURVATURE_BELOW: f64 = 0.003;
+const FULL_CURVATURE_BELOW: f64 = 0.02;
 /// Damping from which to search upwards when the exact second derivatives are not positive definite.
 const INDEFINITE_DAMPING: f64 = 1e-3;
 /// A step this much worse than predicted is refused.

@@ -3,6 +3,7 @@
 pub mod chain;
 pub mod contacts;
 pub mod expansion;
+pub mod export_problem;
 pub mod fit_document;
 pub mod gait_analysis;
 pub mod held_out;
@@ -16,8 +17,8 @@ pub mod periodic;
 pub mod pipeline;
 pub mod problem;
 pub mod published;
-pub mod report;
 mod random;
+pub mod report;
 pub mod stride_curves;
 pub mod stride_fit;
 pub mod synthetic;

@@ -11,68 +11,65 @@
 //! B0 B1 B2 B3 C
 //! ```
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrixView, DMatrixViewMut};
 
 use crate::layout::{Layout, PANEL_DOF, SHARED};
 
 const BORDER: usize = 2 * PANEL_DOF + SHARED;
 const BAND: usize = 3 * PANEL_DOF;
 const ROWS: usize = BAND + BORDER;
+/// Entries of one column of blocks.
+const BLOCK: usize = ROWS * PANEL_DOF;
 
 /// Symmetric matrix of the band-and-border form; only the lower triangle is kept.
 #[derive(Clone, Debug)]
 pub struct NormalMatrix {
-    columns: Vec<DMatrix<f64>>,
-    corner: DMatrix<f64>,
-}
-
-/// Where an entry of the lower triangle is kept.
-enum Place {
-    Column { block: usize, row: usize, column: usize },
-    Corner { row: usize, column: usize },
+    /// Columns of blocks.
+    blocks: usize,
+    /// The columns of blocks, each column-major, then the corner: in one piece, because the solver copies whole
+    /// matrices at each step and the allocator hands one large piece out again without asking the system.
+    data: Vec<f64>,
 }
 
 impl NormalMatrix {
     /// A zero matrix for a stride of at least four panels.
     pub fn zeros(layout: Layout) -> Self {
         assert!(layout.panels >= 4, "a cyclic second difference needs four panels");
-        Self {
-            columns: vec![DMatrix::zeros(ROWS, PANEL_DOF); layout.panels - 2],
-            corner: DMatrix::zeros(BORDER, BORDER),
-        }
+        let blocks = layout.panels - 2;
+        Self { blocks, data: vec![0.0; blocks * BLOCK + BORDER * BORDER] }
     }
 
     /// Number of unknowns.
     pub fn dimension(&self) -> usize {
-        self.columns.len() * PANEL_DOF + BORDER
+        self.border() + BORDER
     }
 
-    fn place(&self, i: usize, j: usize) -> Place {
+    /// Index of the first unknown of the border.
+    fn border(&self) -> usize {
+        self.blocks * PANEL_DOF
+    }
+
+    /// Index into the data of entry `(i, j)`; `(i, j)` and `(j, i)` are the same one.
+    fn place(&self, i: usize, j: usize) -> usize {
         let (row, column) = if i >= j { (i, j) } else { (j, i) };
-        let border = self.columns.len() * PANEL_DOF;
+        let border = self.border();
         if column >= border {
-            return Place::Corner { row: row - border, column: column - border };
+            return self.blocks * BLOCK + (column - border) * BORDER + row - border;
         }
-        let block = column / PANEL_DOF;
-        let row = if row >= border { BAND + row - border } else { row - block * PANEL_DOF };
-        debug_assert!(row < ROWS && (row < BAND || i.max(j) >= border), "entry outside the band");
-        Place::Column { block, row, column: column % PANEL_DOF }
+        let start = column / PANEL_DOF * PANEL_DOF;
+        debug_assert!(row >= border || row < start + BAND, "entry outside the band");
+        column * ROWS + if row >= border { BAND + row - border } else { row - start }
     }
 
     /// Adds to an entry; `(i, j)` and `(j, i)` are the same one.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
-        match self.place(i, j) {
-            Place::Column { block, row, column } => self.columns[block][(row, column)] += value,
-            Place::Corner { row, column } => self.corner[(row, column)] += value,
-        }
+        let place = self.place(i, j);
+        self.data[place] += value;
     }
 
     /// Entry `(i, j)`.
     pub fn get(&self, i: usize, j: usize) -> f64 {
-        match self.place(i, j) {
-            Place::Column { block, row, column } => self.columns[block][(row, column)],
-            Place::Corner { row, column } => self.corner[(row, column)],
-        }
+        self.data[self.place(i, j)]
     }
 
     /// Adds the outer product of a sparse row with itself, times a weight.
@@ -92,58 +89,45 @@ impl NormalMatrix {
         (0..self.dimension()).map(|i| self.get(i, i)).collect()
     }
 
+    /// The stored part of a column from its diagonal down: within the band, and in the border.
+    fn column(&self, j: usize) -> [&[f64]; 2] {
+        if let Some(c) = j.checked_sub(self.border()) {
+            let column = &self.data[self.blocks * BLOCK + c * BORDER..][..BORDER];
+            return [&[], &column[c..]];
+        }
+        let (c, start) = (j % PANEL_DOF, j - j % PANEL_DOF);
+        let column = &self.data[j * ROWS..][..ROWS];
+        [&column[c..BAND.min(self.border() - start)], &column[BAND..]]
+    }
+
     /// Product with a vector.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
-        let border = self.columns.len() * PANEL_DOF;
         let mut y = vec![0.0; x.len()];
-        for (block, column) in self.columns.iter().enumerate() {
-            let start = block * PANEL_DOF;
-            for c in 0..PANEL_DOF {
-                let j = start + c;
-                for (r, &value) in column.column(c).iter().enumerate().skip(c) {
-                    if value == 0.0 {
-                        continue;
-                    }
-                    let i = if r < BAND { start + r } else { border + r - BAND };
-                    y[i] += value * x[j];
-                    if i != j {
-                        y[j] += value * x[i];
-                    }
+        for j in 0..x.len() {
+            let [band, border] = self.column(j);
+            for (part, start) in [(band, j), (border, j.max(self.border()))] {
+                let mut sum = 0.0;
+                for ((value, x_i), y_i) in part.iter().zip(&x[start..]).zip(&mut y[start..]) {
+                    *y_i += value * x[j];
+                    sum += value * x_i;
                 }
+                y[j] += sum;
             }
-        }
-        for c in 0..BORDER {
-            for r in c..BORDER {
-                let value = self.corner[(r, c)];
-                y[border + r] += value * x[border + c];
-                if r != c {
-                    y[border + c] += value * x[border + r];
-                }
-            }
+            // The diagonal counted twice.
+            y[j] -= self.get(j, j) * x[j];
         }
         y
     }
 
     /// Empties the row and column of each pinned unknown but for a one on the diagonal.
     fn pin(&mut self, pinned: &[bool]) {
-        let border = self.columns.len() * PANEL_DOF;
-        let is_pinned = |i: usize| pinned.get(i).copied().unwrap_or(false);
-        for (block, column) in self.columns.iter_mut().enumerate() {
-            let start = block * PANEL_DOF;
-            for c in 0..PANEL_DOF {
-                for r in c..ROWS {
-                    let i = if r < BAND { start + r } else { border + r - BAND };
-                    if is_pinned(start + c) || is_pinned(i) {
-                        column[(r, c)] = if r == c { 1.0 } else { 0.0 };
-                    }
-                }
-            }
-        }
-        for c in 0..BORDER {
-            for r in c..BORDER {
-                if is_pinned(border + c) || is_pinned(border + r) {
-                    self.corner[(r, c)] = if r == c { 1.0 } else { 0.0 };
-                }
+        let border = self.border();
+        for j in 0..self.dimension() {
+            let start = j - j % PANEL_DOF;
+            let band = if j < border { j..border.min(start + BAND) } else { j..j };
+            for i in band.chain(j.max(border)..self.dimension()).filter(|i| pinned[*i] || pinned[j]) {
+                let place = self.place(i, j);
+                self.data[place] = if i == j { 1.0 } else { 0.0 };
             }
         }
     }
@@ -158,61 +142,70 @@ impl NormalMatrix {
         if pinned.iter().any(|p| *p) {
             work.pin(pinned);
         }
-        let n = work.columns.len();
+        let n = work.blocks;
+        let (columns, corner) = work.data.split_at_mut(n * BLOCK);
         for block in 0..n {
-            let (head, tail) = work.columns.split_at_mut(block + 1);
-            let column = &mut head[block];
-            if block + 1 >= n {
-                column.rows_mut(PANEL_DOF, PANEL_DOF).fill(0.0);
-            }
-            if block + 2 >= n {
-                column.rows_mut(2 * PANEL_DOF, PANEL_DOF).fill(0.0);
-            }
-            eliminate(column)?;
-            let transposed = column.rows(PANEL_DOF, ROWS - PANEL_DOF).transpose();
-            if let Some(next) = tail.get_mut(0) {
-                let rows = column.rows(PANEL_DOF, 2 * PANEL_DOF);
-                next.rows_mut(0, 2 * PANEL_DOF).gemm(-1.0, &rows, &transposed.columns(0, PANEL_DOF), 1.0);
-                let border = column.rows(BAND, BORDER);
-                next.rows_mut(BAND, BORDER).gemm(-1.0, &border, &transposed.columns(0, PANEL_DOF), 1.0);
-            }
-            if let Some(after) = tail.get_mut(1) {
-                let rows = column.rows(2 * PANEL_DOF, PANEL_DOF);
-                let right = transposed.columns(PANEL_DOF, PANEL_DOF);
-                after.rows_mut(0, PANEL_DOF).gemm(-1.0, &rows, &right, 1.0);
-                after.rows_mut(BAND, BORDER).gemm(-1.0, &column.rows(BAND, BORDER), &right, 1.0);
+            let (head, tail) = columns.split_at_mut((block + 1) * BLOCK);
+            let column = &mut head[block * BLOCK..];
+            eliminate(column, ROWS)?;
+            // Rows of the next block, the next but one, and the border.
+            let below = DMatrixView::from_slice(column, ROWS, PANEL_DOF);
+            let below = below.rows(PANEL_DOF, ROWS - PANEL_DOF);
+            let transposed = below.transpose();
+            let border = below.rows(2 * PANEL_DOF, BORDER);
+            for (ahead, target) in tail.chunks_exact_mut(BLOCK).take(2).enumerate() {
+                let mut target = DMatrixViewMut::from_slice(target, ROWS, PANEL_DOF);
+                let right = transposed.columns(ahead * PANEL_DOF, PANEL_DOF);
+                let height = (2 - ahead) * PANEL_DOF;
+                target.rows_mut(0, height).gemm(-1.0, &below.rows(ahead * PANEL_DOF, height), &right, 1.0);
+                target.rows_mut(BAND, BORDER).gemm(-1.0, &border, &right, 1.0);
             }
             let right = transposed.columns(2 * PANEL_DOF, BORDER);
-            work.corner.gemm(-1.0, &column.rows(BAND, BORDER), &right, 1.0);
+            DMatrixViewMut::from_slice(corner, BORDER, BORDER).gemm(-1.0, &border, &right, 1.0);
         }
-        eliminate(&mut work.corner)?;
-        Some(Factor { columns: work.columns, corner: work.corner })
+        eliminate(corner, BORDER)?;
+        Some(Factor { lower: work })
     }
 }
 
+/// Columns eliminated one by one before the rest is brought up to date by one matrix product.
+const STRIP: usize = 11;
+
 /// In-place Cholesky of the square head of a tall matrix, applied to the rows below it: `X <- X L^-T`.
-fn eliminate(tall: &mut DMatrix<f64>) -> Option<()> {
-    let (rows, n) = tall.shape();
-    let data = tall.as_mut_slice();
-    for k in 0..n {
-        let (left, right) = data.split_at_mut(k * rows);
-        let column = &mut right[..rows];
-        for j in 0..k {
-            let factor = left[j * rows + k];
-            if factor != 0.0 {
-                for (target, source) in column[k..].iter_mut().zip(&left[j * rows + k..(j + 1) * rows]) {
-                    *target -= factor * source;
-                }
+fn eliminate(tall: &mut [f64], rows: usize) -> Option<()> {
+    let n = tall.len() / rows;
+    for start in (0..n).step_by(STRIP) {
+        let end = n.min(start + STRIP);
+        let (left, right) = tall.split_at_mut(end * rows);
+        let strip = &mut left[start * rows..];
+        eliminate_strip(strip, rows, start)?;
+        if end < n {
+            let strip = DMatrixView::from_slice(strip, rows, end - start);
+            let (below, beside) = (strip.rows(end, rows - end), strip.rows(end, n - end).transpose());
+            let mut rest = DMatrixViewMut::from_slice(right, rows, n - end);
+            rest.rows_mut(end, rows - end).gemm(-1.0, &below, &beside, 1.0);
+        }
+    }
+    Some(())
+}
+
+/// The same for the columns of a strip whose first diagonal entry is in row `start`.
+fn eliminate_strip(strip: &mut [f64], rows: usize, start: usize) -> Option<()> {
+    for k in start..start + strip.len() / rows {
+        let (left, right) = strip.split_at_mut((k - start) * rows);
+        let column = &mut right[k..rows];
+        for before in left.chunks_exact(rows) {
+            let factor = before[k];
+            for (target, source) in column.iter_mut().zip(&before[k..]) {
+                *target -= factor * source;
             }
         }
-        let pivot = column[k];
+        let pivot = column[0];
         if !(pivot > 0.0 && pivot.is_finite()) {
             return None;
         }
-        let root = pivot.sqrt();
-        for value in &mut column[k..] {
-            *value /= root;
-        }
+        let scale = 1.0 / pivot.sqrt();
+        column.iter_mut().for_each(|value| *value *= scale);
     }
     Some(())
 }
@@ -220,55 +213,34 @@ fn eliminate(tall: &mut DMatrix<f64>) -> Option<()> {
 /// Cholesky factor; solves systems with the matrix.
 #[derive(Clone, Debug)]
 pub struct Factor {
-    columns: Vec<DMatrix<f64>>,
-    corner: DMatrix<f64>,
+    lower: NormalMatrix,
 }
 
 impl Factor {
     /// Solves for one right-hand side.
     pub fn solve(&self, right: &[f64]) -> Vec<f64> {
-        let border = self.columns.len() * PANEL_DOF;
-        let mut x = DVector::from_column_slice(right);
-        for (block, column) in self.columns.iter().enumerate() {
-            let start = block * PANEL_DOF;
-            for c in 0..PANEL_DOF {
-                let value = x[start + c] / column[(c, c)];
-                x[start + c] = value;
-                let below = &column.column(c);
-                for r in c + 1..BAND.min(border - start) {
-                    x[start + r] -= value * below[r];
-                }
-                for r in 0..BORDER {
-                    x[border + r] -= value * below[BAND + r];
-                }
-            }
+        let border = self.lower.border();
+        let mut x = right.to_vec();
+        for j in 0..x.len() {
+            let [band, tail] = self.lower.column(j);
+            x[j] /= self.lower.get(j, j);
+            let value = x[j];
+            let (band, tail) = below_diagonal(j, border, band, tail);
+            subtract(&mut x[j + 1..], band, value);
+            subtract(&mut x[border.max(j + 1)..], tail, value);
         }
-        for c in 0..BORDER {
-            let value = x[border + c] / self.corner[(c, c)];
-            x[border + c] = value;
-            for r in c + 1..BORDER {
-                x[border + r] -= value * self.corner[(r, c)];
-            }
+        for j in (0..x.len()).rev() {
+            let [band, tail] = self.lower.column(j);
+            let (band, tail) = below_diagonal(j, border, band, tail);
+            let sum = dot(&x[j + 1..], band) + dot(&x[border.max(j + 1)..], tail);
+            x[j] = (x[j] - sum) / self.lower.get(j, j);
         }
-        for c in (0..BORDER).rev() {
-            let sum: f64 = (c + 1..BORDER).map(|r| self.corner[(r, c)] * x[border + r]).sum();
-            x[border + c] = (x[border + c] - sum) / self.corner[(c, c)];
-        }
-        for (block, column) in self.columns.iter().enumerate().rev() {
-            let start = block * PANEL_DOF;
-            for c in (0..PANEL_DOF).rev() {
-                let below = &column.column(c);
-                let band: f64 = (c + 1..BAND.min(border - start)).map(|r| below[r] * x[start + r]).sum();
-                let tail: f64 = (0..BORDER).map(|r| below[BAND + r] * x[border + r]).sum();
-                x[start + c] = (x[start + c] - band - tail) / column[(c, c)];
-            }
-        }
-        x.as_slice().to_vec()
+        x
     }
 
     /// Diagonal of the inverse: variances, when the matrix is a normal matrix of unit-variance residuals.
     pub fn inverse_diagonal(&self) -> Vec<f64> {
-        let n = self.columns.len() * PANEL_DOF + BORDER;
+        let n = self.lower.dimension();
         let mut unit = vec![0.0; n];
         (0..n)
             .map(|i| {
@@ -281,9 +253,23 @@ impl Factor {
     }
 }
 
+/// A column's two stored parts without the diagonal, which leads the one or the other.
+fn below_diagonal<'a>(j: usize, border: usize, band: &'a [f64], tail: &'a [f64]) -> (&'a [f64], &'a [f64]) {
+    if j < border { (&band[1..], tail) } else { (band, &tail[1..]) }
+}
+
+fn subtract(x: &mut [f64], column: &[f64], value: f64) {
+    x.iter_mut().zip(column).for_each(|(x, c)| *x -= value * c);
+}
+
+fn dot(x: &[f64], column: &[f64]) -> f64 {
+    x.iter().zip(column).map(|(x, c)| x * c).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::{DMatrix, DVector};
 
     /// A random-looking matrix of the right pattern, and the same as a dense one.
     fn example(panels: usize) -> (NormalMatrix, DMatrix<f64>) {

@@ -69,7 +69,11 @@ fn report(title: &str, pairs: &[(SyntheticStride, StrideFit)]) -> [f64; 3] {
     let [joint_m, bend_deg, length] = truth_errors(pairs);
     let single = pairs.iter().map(|pair| truth_errors(std::slice::from_ref(pair)));
     let worst = single.fold([0.0; 3], |worst: [f64; 3], e| std::array::from_fn(|i| worst[i].max(e[i])));
-    println!("{title}: joints {:.2} cm, bends {bend_deg:.2} deg, lengths {:.1} %", 100.0 * joint_m, 100.0 * length);
+    println!(
+        "{title}: joints {:.2} cm, bends {bend_deg:.2} deg, lengths {:.1} %",
+        100.0 * joint_m,
+        100.0 * length
+    );
     println!("  worst stride: {:.2} cm, {:.2} deg, {:.1} %", 100.0 * worst[0], worst[1], 100.0 * worst[2]);
     for keypoint in Keypoint::all() {
         let errors = pairs.iter().flat_map(|(stride, fit)| joint_errors_m(stride, fit, &[keypoint]));
@@ -131,7 +135,13 @@ fn every_start_ends_at_one_optimum() {
                 let warm = solve(&cold.problem, perturbed(&start, 97 * seed + k));
                 let apart = (warm.cost / cold.optimum.cost - 1.0).abs();
                 assert!(warm.converged);
-                if apart > 1e-8 {println!("{outlier_share} {labelled} seed {seed} start {k}: {apart:.1e} {} {}",warm.steps, warm.cost-cold.optimum.cost);}
+                if apart > 1e-8 {
+                    println!(
+                        "{outlier_share} {labelled} seed {seed} start {k}: {apart:.1e} {} {}",
+                        warm.steps,
+                        warm.cost - cold.optimum.cost
+                    );
+                }
                 worst = worst.max(apart);
                 most_steps = most_steps.max(warm.steps);
             }

@@ -98,7 +98,7 @@ fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
                 format!("{:?}", plate.images).to_lowercase(),
             ),
             Err(error) => {
-                println!("{error}");
+                println!("{:#}", anyhow::Error::new(error));
                 bad += 1;
             }
         }

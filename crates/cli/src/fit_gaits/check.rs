@@ -12,7 +12,8 @@ const LAW_TOLERANCE: f64 = 2.1e-5;
 /// Differences listed before the rest is only counted.
 const LISTED: usize = 10;
 
-/// What differs, in words; with `only`, of these plates alone.
+/// What differs, in words; with `only`, of these plates' captured strides alone: laws, and with them the strides at other
+/// speeds, rest on all plates of a gait.
 pub(super) fn differences(committed: &Database, fresh: &Database, only: &[String]) -> Vec<String> {
     let mut found = Vec::new();
     if only.is_empty() {
@@ -26,10 +27,7 @@ pub(super) fn differences(committed: &Database, fresh: &Database, only: &[String
             pairs.filter(|(a, b)| !same_law(a, b)).map(|(a, _)| format!("law {} differs", law_name(a))),
         );
     }
-    let wanted = |stride: &&Stride| {
-        let plate = stride.id.split('@').next().unwrap_or_default();
-        only.is_empty() || only.iter().any(|id| id == plate)
-    };
+    let wanted = |stride: &&Stride| only.is_empty() || only.contains(&stride.id);
     for stride in fresh.strides.iter().filter(wanted) {
         match committed.strides.iter().find(|s| s.id == stride.id) {
             None => found.push(format!("stride {} is missing from the file", stride.id)),

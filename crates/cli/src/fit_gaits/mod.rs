@@ -130,7 +130,7 @@ fn write_report(arguments: &Arguments, outcome: &Outcome, skeleton: &Skeleton) -
     for fitted in &outcome.fits {
         write_json(&folder.join(format!("{}.fit.json", fitted.id())), &FitDocument::new(fitted, skeleton))?;
     }
-    let page = String::new();
+    let page = muybridge_fitting::report::html(&outcome.fits, &outcome.laws, &outcome.failures, skeleton);
     let path = folder.join("index.html");
     write_atomically(&path, page.as_bytes())?;
     eprintln!("report: {}", path.display());

@@ -54,12 +54,22 @@ pub(super) fn fit_all(paths: &[PathBuf], skeleton: &Skeleton) -> (Vec<PlateFit>,
         })
         .collect();
     bar.finish_and_clear();
-    let (mut fits, mut failures) = (Vec::new(), Vec::new());
+    let (mut fits, mut failures): (Vec<PlateFit>, Vec<String>) = (Vec::new(), Vec::new());
     for result in results {
         match result {
-            Ok(fit) => fits.push(fit),
-            Err(failure) => failures.push(failure.to_string()),
+            Ok(fit) => match fits.iter().find(|other| other.id() == fit.id()) {
+                None => fits.push(fit),
+                Some(other) => failures.push(annotated_twice(&fit, other)),
+            },
+            // With the causes, such as the system's own reason why a file cannot be read.
+            Err(failure) => failures.push(format!("{:#}", anyhow::Error::new(failure))),
         }
     }
     (fits, failures)
+}
+
+/// Strides are told apart by their plate's identifier, so that a plate can have only one annotation.
+fn annotated_twice(fit: &PlateFit, other: &PlateFit) -> String {
+    let [path, first] = [fit, other].map(|fit| fit.plate.annotation_path.display());
+    format!("{path}: plate: {} is annotated in {first}, too; keep one of the two", fit.id())
 }

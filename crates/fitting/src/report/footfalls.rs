@@ -1,4 +1,4 @@
-//! The footfall diagram: stance of the four feet over one stride from the left hind's strike, and the feet that carry it.
+//! The footfall diagram: stance of the four feet over one stride, and which of them carry the horse when.
 
 use muybridge_core::{Limb, Pair};
 
@@ -13,7 +13,7 @@ const LANES: [Limb; 4] = [Limb::LH, Limb::LF, Limb::RF, Limb::RH];
 const TOP_PX: f64 = 30.0;
 const LANE_PX: f64 = 30.0;
 const BAR_PX: f64 = 15.0;
-const LEFT_PX: f64 = 92.0;
+const LEFT_PX: f64 = 108.0;
 const RIGHT_PX: f64 = 24.0;
 /// Panels' ticks, labels of the axis, and support patterns under the lanes.
 const BELOW_PX: f64 = 142.0;
@@ -32,10 +32,11 @@ pub(super) fn footfalls(fit: &PlateFit) -> String {
     };
     let title = format!("Footfall diagram of {}", fit.plate.manifest.animal);
     let picture = svg(&title, [FULL_WIDTH_PX, diagram.bottom + BELOW_PX], |pen| diagram.draw(pen));
-    let caption = "Stance of each foot in percent of the stride from the left hind&#8217;s strike; whiskers are &#177;1 standard \
-         deviation of foot strike and lift-off. Numbered ticks are the panels. Under them the support patterns, seen from above \
-         with the head to the right: filled feet are down; the number is the pattern&#8217;s share of the stride in percent. A \
-         time without a foot down is shaded only where it is longer than twice its own uncertainty.";
+    let caption = "Stance of each foot in percent of the stride from the left hind&#8217;s strike; \
+     whiskers are &#177;1 standard deviation of foot strike and lift-off. Numbered ticks are the panels. \
+     Under them the support patterns, seen from above with the head to the right: filled feet are down; \
+     the number is the pattern&#8217;s share of the stride in percent. A time without a foot down is \
+     shaded only where it is longer than twice its own uncertainty.";
     format!("{}{}{}", figure(&picture, caption), by_leg(fit), in_words(fit))
 }
 
@@ -83,7 +84,7 @@ impl Diagram<'_> {
             pen.line(&[[x, TOP_PX], [x, self.bottom]], Ink::Rule, 0.75)?;
             pen.label([x, self.bottom + 46.0], &tick_label(*tick, &ticks), Anchor::Middle)?;
         }
-        pen.label([LEFT_PX - 12.0, self.bottom + 46.0], "% of stride", Anchor::End)
+        pen.label([LEFT_PX - 24.0, self.bottom + 46.0], "% of stride", Anchor::End)
     }
 
     fn lane(&self, pen: &Pen<'_>, lane: usize, limb: Limb) -> Drawn {
@@ -91,8 +92,8 @@ impl Diagram<'_> {
         let contact = &self.fit.analysis.contacts[limb.index()];
         let near_off = self.fit.plate.manifest.facing.near_off(limb.side());
         let ink = super::ink_of_side(near_off);
-        pen.text([LEFT_PX - 12.0, y], limb.abbreviation(), LABEL_PX + 1.0, Ink::Text, Anchor::End)?;
-        pen.label([LEFT_PX - 38.0, y], &format!("{near_off:?}").to_lowercase(), Anchor::End)?;
+        pen.text([LEFT_PX - 24.0, y], limb.abbreviation(), LABEL_PX + 1.0, Ink::Text, Anchor::End)?;
+        pen.label([LEFT_PX - 50.0, y], &format!("{near_off:?}").to_lowercase(), Anchor::End)?;
         let (strike, duty) = (self.since(contact.strike.phase), contact.duty_factor());
         for (low, high) in within_stride(strike, duty) {
             let [top, bottom] = [y - 0.5 * BAR_PX, y + 0.5 * BAR_PX];
@@ -135,7 +136,7 @@ impl Diagram<'_> {
             pen.line(&[[x, self.bottom - 4.0], [x, y - 7.0]], Ink::Text, 1.0)?;
             pen.text([x, y], &panel.to_string(), LABEL_PX - 1.0, Ink::Text, Anchor::Middle)?;
         }
-        pen.label([LEFT_PX - 12.0, self.bottom + 13.0], "panel", Anchor::End)
+        pen.label([LEFT_PX - 24.0, self.bottom + 13.0], "panel", Anchor::End)
     }
 
     /// The row of support patterns, each under its own time as far as there is room.
@@ -145,24 +146,34 @@ impl Diagram<'_> {
             supports.iter().map(|s| self.x.at((self.since(s.start) + 0.5 * s.share).min(1.0))).collect();
         let row = self.bottom + 96.0;
         let [low, high] = [LEFT_PX + 10.0, FULL_WIDTH_PX - RIGHT_PX];
-        for ((support, wanted), x) in supports.iter().zip(&wanted).zip(spread(&wanted, GLYPH_STEP_PX, [low, high])) {
+        for ((support, wanted), x) in
+            supports.iter().zip(&wanted).zip(spread(&wanted, GLYPH_STEP_PX, [low, high]))
+        {
             pen.line(&[[*wanted, self.bottom + 58.0], [x, row - 18.0]], Ink::Muted, 0.75)?;
             for limb in Limb::ALL {
                 let across = if limb.pair() == Pair::Fore { 7.0 } else { -7.0 };
                 let down = if limb.index().is_multiple_of(2) { -7.0 } else { 7.0 };
                 let ink = super::ink_of_side(self.fit.plate.manifest.facing.near_off(limb.side()));
                 let at = [x + across, row + down];
-                if support.down[limb.index()] { pen.dot(at, 4.5, ink, 1.0)? } else { pen.ring(at, 4.0, Ink::Muted)? }
+                if support.down[limb.index()] {
+                    pen.dot(at, 4.5, ink, 1.0)?;
+                } else {
+                    pen.ring(at, 4.0, Ink::Muted)?;
+                }
             }
             pen.label([x, row + 24.0], &format!("{:.0}", 100.0 * support.share), Anchor::Middle)?;
         }
-        pen.label([LEFT_PX - 12.0, row], "feet down", Anchor::End)
+        pen.label([LEFT_PX - 24.0, row], "feet down", Anchor::End)
     }
 }
 
 /// A stretch from `start` in `[0, 1)`, cut in two where it runs through the end of the stride.
 fn within_stride(start: f64, share: f64) -> Vec<(f64, f64)> {
-    if start + share <= 1.0 { vec![(start, start + share)] } else { vec![(start, 1.0), (0.0, start + share - 1.0)] }
+    if start + share <= 1.0 {
+        vec![(start, start + share)]
+    } else {
+        vec![(start, 1.0), (0.0, start + share - 1.0)]
+    }
 }
 
 /// Rising places moved as little as a pass each way does, so that neighbours are a step apart within limits.
@@ -214,13 +225,21 @@ fn in_words(fit: &PlateFit) -> String {
         .map(|s| {
             let kind = if s.is_gathered() { "gathered suspension" } else { "suspension" };
             let time = plus_minus(s.share * stride_ms, s.sd * stride_ms, 0);
-            format!("a {kind} of {time} ms from {}&#8217;s lift-off to {}&#8217;s strike", s.left_by.abbreviation(), s.ended_by.abbreviation())
+            format!(
+                "a {kind} of {time} ms from {}&#8217;s lift-off to {}&#8217;s strike",
+                s.left_by.abbreviation(),
+                s.ended_by.abbreviation()
+            )
         })
         .collect();
-    let flights = if flights.is_empty() { "no suspension that its uncertainty allows to claim".to_string() } else { flights.join(", ") };
+    let flights = if flights.is_empty() {
+        "no suspension that its uncertainty allows to claim".to_string()
+    } else {
+        flights.join(", ")
+    };
     format!(
-        "<p>Order of footfalls {}; {flights}. Footfalls imply a {}. Froude number {:.1}; a stance limb sweeps {:.0}&#176; \
-         (fore) and {:.0}&#176; (hind).</p>\n",
+        "<p>Order of footfalls {}; {flights}. Footfalls imply a {}. Froude number {:.1}; a stance limb \
+         sweeps {:.0}&#176; (fore) and {:.0}&#176; (hind).</p>\n",
         order.join(" &#8594; "),
         escape(analysis.implied.name()),
         fit.froude(),

@@ -1,7 +1,7 @@
 //! The fit report: one HTML page with every plate's stride, footfalls and residuals, and the laws of speed.
 //!
-//! The page loads nothing: the style sheet and the plots (SVG) are in it, and it needs no script. It follows the
-//! reader's choice of light or dark, and prints. Equal fits give equal bytes.
+//! The page loads nothing: the style sheet and the plots (SVG) are in it, and it needs no script. It follows
+//! the reader's choice of light or dark, and prints. Equal fits give equal bytes.
 
 mod footfalls;
 mod hoof_paths;
@@ -26,8 +26,8 @@ use plot::Ink;
 
 /// The report on a set of fitted plates and the laws made of them, as a self-contained HTML page.
 ///
-/// `failures` are the causes why other plates were not fitted, in words, one for each. `skeleton` is the reference the
-/// plates were fitted with.
+/// `failures` are the causes why other plates were not fitted, in words, one for each. `skeleton` is the
+/// reference the plates were fitted with.
 pub fn html(fits: &[PlateFit], laws: &[GaitLaw], failures: &[String], skeleton: &Skeleton) -> String {
     let mut body = summary::summary(fits, failures);
     for (index, fit) in fits.iter().enumerate() {

@@ -27,7 +27,7 @@ pub(super) fn plus_minus(value: f64, sd: f64, decimals: usize) -> String {
     format!("{value:.decimals$}&#8239;±&#8239;{sd:.decimals$}")
 }
 
-/// Value and spread of a quantity whose size is not known beforehand: two digits of the spread, at most four decimals.
+/// Value and spread of a quantity of any size: two digits of the spread, at most four decimals.
 pub(super) fn plus_minus_fitting(value: f64, sd: f64) -> String {
     let smaller = if sd > 0.0 { sd } else { value.abs() * 1e-3 };
     let decimals = if smaller > 0.0 { (1.0 - smaller.log10().floor()).clamp(0.0, 4.0) as usize } else { 2 };
@@ -42,7 +42,8 @@ pub(super) fn signed(value: f64, decimals: usize) -> String {
 
 /// A number with a true minus sign.
 pub(super) fn number(value: f64, decimals: usize) -> String {
-    format!("{value:.decimals$}").replace('-', "\u{2212}")
+    // Adding zero turns a negative zero into a plain one.
+    format!("{:.decimals$}", value + 0.0).replace('-', "\u{2212}")
 }
 
 /// A table from rows of ready HTML cells; the first cell of a row is its head.

@@ -1,6 +1,8 @@
 //! One plate: what it is, how scale and time are known, and where its sources disagree.
 
-use muybridge_capture::{Estimate, Known, NearOff, Parallax, Plane, Position, ScaleSource, TimeSource};
+use muybridge_capture::{
+    Disagreement, Estimate, Known, NearOff, Parallax, Plane, Position, ScaleSource, TimeSource,
+};
 use muybridge_core::{Skeleton, SpeedSource};
 
 use super::page::{escape, list, plus_minus_fitting, signed, table};
@@ -28,17 +30,24 @@ pub(super) fn section(index: usize, fit: &PlateFit, skeleton: &Skeleton) -> Stri
         ("Bone lengths", lengths::bone_lengths(fit, skeleton)),
     ];
     let parts: String = parts.iter().map(|(name, content)| format!("<h3>{name}</h3>\n{content}")).collect();
-    format!("<section id=\"plate-{index}\"><h2>{}</h2>\n{}{parts}</section>\n", escape(&manifest.title), facts(fit))
+    format!(
+        "<section id=\"plate-{index}\"><h2>{}</h2>\n{}{parts}</section>\n",
+        escape(&manifest.title),
+        facts(fit)
+    )
 }
 
 fn facts(fit: &PlateFit) -> String {
     let (manifest, annotation) = (&fit.plate.manifest, &fit.plate.annotation);
-    let plate = manifest.catalogue_number.as_ref().map_or(String::new(), |number| format!(", plate {}", escape(number)));
+    let plate = manifest
+        .catalogue_number
+        .as_ref()
+        .map_or(String::new(), |number| format!(", plate {}", escape(number)));
     let printed: String = manifest.printed.iter().map(|line| format!("<p>{}</p>", escape(line))).collect();
     let printed = if printed.is_empty() { printed } else { format!("<blockquote>{printed}</blockquote>\n") };
     format!(
-        "<p class=\"facts\">{}, {}{plate}. Titled {}, facing {}.<br/>Source: {}. Held by {}. Rights: {}.<br/>{} panels fitted, {} \
-         points placed by {}.</p>\n{printed}",
+        "<p class=\"facts\">{}, {}{plate}. Titled {}, facing {}.<br/>Source: {}. Held by {}. Rights: \
+         {}.<br/>{} panels fitted, {} points placed by {}.</p>\n{printed}",
         escape(&manifest.animal),
         escape(&manifest.date),
         manifest.gait,
@@ -63,8 +72,8 @@ fn calibration(fit: &PlateFit) -> String {
         format!(" Things on the track appear {} times as large as on the wall of marks.", estimate(ratio))
     });
     format!(
-        "<p>The fit is driven by {} for scale and by {} for time. The speed of {} m/s {speed}; the mean interval between panels is \
-         {} ms.{parallax}</p>\n{}{}",
+        "<p>The fit is driven by {} for scale and by {} for time. The speed of {} m/s {speed}; the mean \
+         interval between panels is {} ms.{parallax}</p>\n{}{}",
         scale_name(fit.plate.manifest.calibration.scale.driven_by),
         time_name(fit.plate.manifest.calibration.time.driven_by),
         estimate(of.speed_m_s),
@@ -108,7 +117,8 @@ fn known_table(fit: &PlateFit) -> String {
         }
     };
     add("distance of marks, m", scale.known_length.as_ref().map(|length| &length.mark_spacing_m), by_length);
-    if let Some(Plane::Wall(Parallax::Ratio(ratio))) = scale.known_length.as_ref().map(|length| &length.plane) {
+    if let Some(Plane::Wall(Parallax::Ratio(ratio))) = scale.known_length.as_ref().map(|length| &length.plane)
+    {
         add("track over wall, ratio of scales", Some(ratio), by_length);
     }
     add("withers height, m", scale.withers_height_m.as_ref(), !by_length);
@@ -133,29 +143,38 @@ fn disagreements(fit: &PlateFit) -> String {
         .map(|d| {
             let sigmas = d.sigmas();
             let apart = if sigmas.is_finite() { format!("{sigmas:.1}") } else { "both exact".into() };
-            let apart =
-                if sigmas > SIGMAS_THAT_DISAGREE { format!("<span class=\"warning\">{apart}</span>") } else { apart };
+            let apart = if sigmas > SIGMAS_THAT_DISAGREE {
+                format!("<span class=\"warning\">{apart}</span>")
+            } else {
+                apart
+            };
             let source = |(name, value): &(String, Estimate)| {
                 format!("{}<br/><small>{}</small>", estimate(*value), escape(name))
             };
             vec![escape(d.quantity), source(&d.used), source(&d.other), signed(d.percent(), 1), apart]
         })
         .collect();
-    let in_words: Vec<String> = found
-        .iter()
-        .map(|d| {
-            let verdict = if d.sigmas() > SIGMAS_THAT_DISAGREE { "they disagree" } else { "they agree within their spread" };
-            format!(
-                "{}: <b>{}</b> drives the fit, {} differs by {} %; {verdict}",
-                escape(d.quantity),
-                escape(&d.used.0),
-                escape(&d.other.0),
-                signed(d.percent(), 1)
-            )
-        })
-        .collect();
-    let head = ["Quantity", "Drives the fit", "The other source", "Difference, %", "Standard deviations apart"];
-    format!("{}{}", table("disagreements", &head, &rows), list("disagreements", &in_words))
+    let head =
+        ["Quantity", "Drives the fit", "The other source", "Difference, %", "Standard deviations apart"];
+    format!("<p>{}</p>\n{}", verdict(found), table("disagreements", &head, &rows))
+}
+
+/// Which quantities two sources disagree on.
+fn verdict(found: &[Disagreement]) -> String {
+    let apart: Vec<String> =
+        found.iter().filter(|d| d.sigmas() > SIGMAS_THAT_DISAGREE).map(|d| escape(d.quantity)).collect();
+    let verdict = if apart.is_empty() {
+        "All agree within two standard deviations.".to_string()
+    } else {
+        format!(
+            "<span class=\"warning\">More than two standard deviations apart: {}.</span>",
+            apart.join("; ")
+        )
+    };
+    format!(
+        "Some quantities are known twice. The fit rests on the source named first; the other is only \
+         compared. {verdict}"
+    )
 }
 
 /// The animal's near side in a word.

@@ -1,19 +1,19 @@
 //! Pen and axes for the report's plots, and their two sets of colours.
 //!
-//! Plots are drawn in px of the page's full width. `plotters` draws at whole units, so a px is several of them, and the
-//! picture's `viewBox` brings them back to px.
+//! Plots are drawn in px of the page's full width. `plotters` draws at whole units, so a px is several of
+//! them, and the picture's `viewBox` brings them back to px.
 
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::Ranged;
 use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::{
-    Circle, DrawingArea, DrawingAreaErrorKind, IntoDrawingArea, IntoTextStyle, PathElement, Polygon, RGBAColor, SVGBackend,
-    ShapeStyle, Text,
+    Circle, DrawingArea, DrawingAreaErrorKind, IntoDrawingArea, IntoTextStyle, PathElement, Polygon,
+    RGBAColor, SVGBackend, ShapeStyle, Text,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::page::escape;
+use super::page::{escape, number};
 
 /// Whole units of the backend per px: an eighth of a px keeps a hoof on its ground line.
 const UNITS_PER_PX: f64 = 8.0;
@@ -169,7 +169,8 @@ impl Pen<'_> {
 
     /// A filled area.
     pub(super) fn area(&self, outline: &[[f64; 2]], ink: Ink, opacity: f64) -> Drawn {
-        self.area.draw(&Polygon::new(outline.iter().copied().map(units).collect::<Vec<_>>(), ink.style(opacity)))
+        self.area
+            .draw(&Polygon::new(outline.iter().copied().map(units).collect::<Vec<_>>(), ink.style(opacity)))
     }
 
     /// A filled rectangle between two corners.
@@ -203,7 +204,7 @@ impl Pen<'_> {
                 Mark::Diamond => [0.0, 90.0, 180.0, 270.0].map(|a| corner(a, 1.2 * r)).to_vec(),
             }
         };
-        self.area(&outline(radius_px + 1.5), Ink::Paper, 1.0)?;
+        self.area(&outline(radius_px + 1.2), Ink::Paper, 1.0)?;
         self.area(&outline(radius_px), ink, 1.0)
     }
 
@@ -226,8 +227,12 @@ impl Pen<'_> {
     }
 }
 
-/// An inline picture with a title that screen readers speak. Should drawing fail, the page says so in its place.
-pub(super) fn svg(title: &str, [width_px, height_px]: [f64; 2], draw: impl FnOnce(&Pen<'_>) -> Drawn) -> String {
+/// An inline picture with a title that screen readers speak; should drawing fail, a sentence that says so.
+pub(super) fn svg(
+    title: &str,
+    [width_px, height_px]: [f64; 2],
+    draw: impl FnOnce(&Pen<'_>) -> Drawn,
+) -> String {
     let size = [width_px, height_px].map(length_in_units);
     let mut drawn = String::new();
     let result = {
@@ -235,12 +240,17 @@ pub(super) fn svg(title: &str, [width_px, height_px]: [f64; 2], draw: impl FnOnc
         draw(&pen).and_then(|()| pen.area.present())
     };
     if let Err(error) = result {
-        return format!("<p class=\"warning\">{}: the plot was not drawn: {}</p>", escape(title), escape(&error.to_string()));
+        return format!(
+            "<p class=\"warning\">{}: the plot was not drawn: {}</p>",
+            escape(title),
+            escape(&error.to_string())
+        );
     }
     // The backend's own opening tag fixes the size in px; this one lets the picture follow the page.
     let content = drawn.split_once('>').map_or("", |(_, content)| content);
     format!(
-        "<svg viewBox=\"0 0 {} {}\" style=\"max-width:{width_px}px\" role=\"img\" aria-label=\"{title}\"><title>{title}</title>{content}",
+        "<svg viewBox=\"0 0 {} {}\" style=\"max-width:{width_px}px\" role=\"img\" \
+         aria-label=\"{title}\"><title>{title}</title>{content}",
         size[0],
         size[1],
         title = escape(title)
@@ -270,12 +280,12 @@ impl Axis {
 /// A tick's label, with as many decimals as neighbouring ticks need to differ.
 pub(super) fn tick_label(value: f64, ticks: &[f64]) -> String {
     let step = ticks.windows(2).map(|w| (w[1] - w[0]).abs()).fold(f64::INFINITY, f64::min);
-    // Adding zero turns a negative zero into a plain one.
-    match step {
-        s if s >= 0.999 => format!("{:.0}", value + 0.0),
-        s if s >= 0.0999 => format!("{value:.1}"),
-        _ => format!("{value:.2}"),
-    }
+    let decimals = match step {
+        s if s >= 0.999 => 0,
+        s if s >= 0.0999 => 1,
+        _ => 2,
+    };
+    number(value, decimals)
 }
 
 /// A frame of two axes with grid lines and labels at the bottom and on the left.
@@ -291,7 +301,12 @@ impl Frame {
     }
 
     /// Grid, tick labels, and what the axes show.
-    pub(super) fn draw(&self, pen: &Pen<'_>, [x_ticks, y_ticks]: [usize; 2], [x_name, y_name]: [&str; 2]) -> Drawn {
+    pub(super) fn draw(
+        &self,
+        pen: &Pen<'_>,
+        [x_ticks, y_ticks]: [usize; 2],
+        [x_name, y_name]: [&str; 2],
+    ) -> Drawn {
         let ([left, right], [bottom, top]) = (self.x.px, self.y.px);
         let ticks = self.x.ticks(x_ticks);
         for value in &ticks {

@@ -2,7 +2,7 @@
 
 use muybridge_capture::{Keypoint, KeypointState};
 
-use super::page::{escape, figure, list, number, table};
+use super::page::{figure, list, table};
 use super::plot::{Anchor, Axis, Drawn, FULL_WIDTH_PX, Ink, LABEL_PX, Mark, Pen, svg, tick_label};
 use crate::held_out::quantile;
 use crate::pipeline::PlateFit;
@@ -22,10 +22,10 @@ const LEAST_HEAT: f64 = 0.05;
 
 /// The plot, the table of panels, and the worst points.
 pub(super) fn residuals(fit: &PlateFit) -> String {
-    let caption = "Distance of the fitted joint from the placed point, in percent of withers height. On the left all placed \
-         points: the bar is the root mean square over the panels, dots are single panels (hollow where the point was guessed). On \
-         the right the error of visible points when the fit sees no point of that keypoint in any panel: the diamond is the \
-         median, dots are single panels.";
+    let caption = "Distance of the fitted joint from the placed point, in percent of withers height. On \
+     the left all placed points: the bar is the root mean square over the panels, dots are single panels \
+     (hollow where the point was guessed). On the right the error of visible points when the fit sees no \
+     point of that keypoint in any panel: the diamond is the median, dots are single panels.";
     let worst = worst_points(fit);
     let told = list("worst", &worst);
     format!(
@@ -48,7 +48,9 @@ fn by_keypoint(fit: &PlateFit) -> String {
     let bottom = TOP_PX + used.len() as f64 * ROW_PX;
     let axes = [FITTED_PX, HELD_OUT_PX].map(|px| Axis { values: [0.0, 1.03 * greatest], px });
     svg("Residuals and held-out errors by keypoint", [FULL_WIDTH_PX, bottom + 24.0], |pen| {
-        for (axis, name) in axes.iter().zip(["residual, % of withers height", "held-out error, % of withers height"]) {
+        for (axis, name) in
+            axes.iter().zip(["residual, % of withers height", "held-out error, % of withers height"])
+        {
             pen.text([axis.px[0], 12.0], name, LABEL_PX, Ink::Text, Anchor::Start)?;
             let ticks = axis.ticks(9);
             for tick in &ticks {
@@ -66,7 +68,13 @@ fn by_keypoint(fit: &PlateFit) -> String {
     })
 }
 
-fn keypoint_row(pen: &Pen<'_>, fit: &PlateFit, keypoint: Keypoint, y: f64, [fitted, held_out]: [Axis; 2]) -> Drawn {
+fn keypoint_row(
+    pen: &Pen<'_>,
+    fit: &PlateFit,
+    keypoint: Keypoint,
+    y: f64,
+    [fitted, held_out]: [Axis; 2],
+) -> Drawn {
     let ink = super::ink_of(keypoint);
     pen.text([FITTED_PX[0] - 10.0, y], &super::name_of(keypoint), LABEL_PX, ink, Anchor::End)?;
     let of = |all: &[PointResidual]| -> Vec<(f64, KeypointState)> {
@@ -93,27 +101,25 @@ fn keypoint_row(pen: &Pen<'_>, fit: &PlateFit, keypoint: Keypoint, y: f64, [fitt
 fn worst_points(fit: &PlateFit) -> Vec<String> {
     let mut order: Vec<&PointResidual> = fit.residuals.iter().collect();
     order.sort_by(|a, b| b.px().total_cmp(&a.px()));
-    let cameras = &fit.calibration.stride;
-    order
-        .into_iter()
-        .take(WORST)
-        .map(|r| {
-            let guessed = if r.state == KeypointState::Visible { "" } else { " (guessed)" };
-            let direction = cameras.iter().find(|camera| camera.panel == r.panel).map_or(String::new(), |camera| {
-                let off = [0, 1].map(|axis| r.fitted_px[axis] - r.placed_px[axis]);
-                let along = |unit: [f64; 2]| off[0] * unit[0] + off[1] * unit[1];
-                in_words(along(camera.forward), along(camera.up))
-            });
-            format!(
-                "panel {}, {}{guessed}: {:.1} px = {:.1} cm = {:.1} % of withers height; the fit lies {direction}",
-                r.panel,
-                escape(&super::name_of(r.keypoint)),
-                r.px(),
-                100.0 * r.metres(),
-                percent(fit, r)
-            )
-        })
-        .collect()
+    order.into_iter().take(WORST).map(|residual| told(fit, residual)).collect()
+}
+
+fn told(fit: &PlateFit, residual: &PointResidual) -> String {
+    let guessed = if residual.state == KeypointState::Visible { "" } else { " (guessed)" };
+    let camera = fit.calibration.stride.iter().find(|camera| camera.panel == residual.panel);
+    let direction = camera.map_or(String::new(), |camera| {
+        let off = [0, 1].map(|axis| residual.fitted_px[axis] - residual.placed_px[axis]);
+        let along = |unit: [f64; 2]| off[0] * unit[0] + off[1] * unit[1];
+        format!("; the fit lies {}", in_words(along(camera.forward), along(camera.up)))
+    });
+    format!(
+        "panel {}, {}{guessed}: {:.1} px = {:.1} cm = {:.1} % of withers height{direction}",
+        residual.panel,
+        super::name_of(residual.keypoint),
+        residual.px(),
+        100.0 * residual.metres(),
+        percent(fit, residual)
+    )
 }
 
 /// Where a point lies, from its px ahead and above; a component below a third of the other is not told.
@@ -140,14 +146,16 @@ fn heat_table(fit: &PlateFit) -> String {
                 return None;
             }
             let mut row = vec![super::name_of(keypoint)];
-            row.extend(panels.iter().map(|panel| of.iter().find(|r| r.panel == *panel).map_or("·".into(), |r| heat_cell(r))));
-            row.push(number(rms(of.iter().map(|r| r.px())), 1));
+            row.extend(panels.iter().map(|panel| {
+                of.iter().find(|r| r.panel == *panel).map_or("<span>·</span>".into(), |r| heat_cell(r))
+            }));
+            row.push(format!("<span><b>{:.1}</b></span>", rms(of.iter().map(|r| r.px()))));
             Some(row)
         })
         .collect();
     format!(
-        "{}<p class=\"note\">Residuals in px of the plate, keypoint by panel; guessed points in italics. One px is {:.1} mm on the \
-         track.</p>\n",
+        "{}<p class=\"note\">Residuals in px of the plate, keypoint by panel; guessed points in italics. \
+         One px is {:.1} mm on the track.</p>\n",
         table("heat", &head, &rows),
         mean_mm_per_px(fit)
     )

@@ -13,7 +13,7 @@ use crate::stride_fit::StrideFit;
 /// Height of the legend, px.
 const LEGEND_PX: f64 = 34.0;
 /// Room under the ground line for the panel's number, px.
-const FOOT_PX: f64 = 40.0;
+const FOOT_PX: f64 = 46.0;
 /// Room around a figure, px.
 const MARGIN_PX: f64 = 12.0;
 
@@ -46,17 +46,17 @@ pub(super) fn strip(fit: &PlateFit) -> String {
             let left = (i % columns) as f64 * cell_px;
             let ground = LEGEND_PX + (i / columns + 1) as f64 * row_px - FOOT_PX;
             let middle_m = 0.5 * (still.span_m[0] + still.span_m[1]);
-            let to_px = |[x, y]: [f64; 2]| {
-                [left + 0.5 * cell_px + (x - middle_m) * px_per_m, ground - y * px_per_m]
-            };
+            let to_px =
+                |[x, y]: [f64; 2]| [left + 0.5 * cell_px + (x - middle_m) * px_per_m, ground - y * px_per_m];
             still.draw(pen, [left, cell_px, ground], &to_px)
         })
     });
     let near = super::plate::near_side(fit);
     let caption = format!(
-        "The fitted skeleton in every panel, in order of time and to one scale; forward is to the right whichever way the \
-         animal faces on the plate. Near is the animal&#8217;s {near} side. Dots are the points a person placed, carried to the \
-         track by the panel&#8217;s camera: filled where seen, hollow where guessed. Bars under the ground line mark hooves in stance."
+        "The fitted skeleton in every panel, in order of time and to one scale; forward is to the right \
+         whichever way the animal faces on the plate. Near is the animal&#8217;s {near} side. Dots are \
+         the points a person placed, carried to the track by the panel&#8217;s camera: filled where seen, \
+         hollow where guessed. Bars under the ground line mark hooves in stance."
     );
     figure(&picture, &caption)
 }
@@ -114,7 +114,12 @@ impl Still<'_> {
     }
 
     /// `cell` is the cell's left edge, width and ground line, px.
-    fn draw(&self, pen: &Pen<'_>, [left, width, ground]: [f64; 3], to_px: &dyn Fn([f64; 2]) -> [f64; 2]) -> Drawn {
+    fn draw(
+        &self,
+        pen: &Pen<'_>,
+        [left, width, ground]: [f64; 3],
+        to_px: &dyn Fn([f64; 2]) -> [f64; 2],
+    ) -> Drawn {
         pen.line(&[[left + 4.0, ground], [left + width - 4.0, ground]], Ink::Ground, 1.0)?;
         self.limbs(pen, NearOff::Off, to_px)?;
         self.body(pen, to_px)?;
@@ -125,12 +130,21 @@ impl Still<'_> {
         }
         let middle = left + 0.5 * width;
         let camera = &self.panel.camera;
-        pen.text([middle - 5.0, ground + 20.0], &camera.panel.to_string(), LABEL_PX + 1.0, Ink::Text, Anchor::End)?;
-        pen.label([middle + 3.0, ground + 20.0], &format!("{:.0} ms", 1000.0 * camera.time_s), Anchor::Start)
+        pen.text(
+            [middle - 5.0, ground + 24.0],
+            &camera.panel.to_string(),
+            LABEL_PX + 1.0,
+            Ink::Text,
+            Anchor::End,
+        )?;
+        pen.label([middle + 3.0, ground + 24.0], &format!("{:.0} ms", 1000.0 * camera.time_s), Anchor::Start)
     }
 
     fn body(&self, pen: &Pen<'_>, to_px: &dyn Fn([f64; 2]) -> [f64; 2]) -> Drawn {
-        let mut outline = vec![to_px(self.kinematics.place(Attachment::Dock)), to_px(self.kinematics.place(Attachment::Root))];
+        let mut outline = vec![
+            to_px(self.kinematics.place(Attachment::Dock)),
+            to_px(self.kinematics.place(Attachment::Root)),
+        ];
         outline.extend((bone::SPINE..=bone::HEAD).map(|bone| to_px(self.kinematics.bone(bone)[1])));
         pen.line(&outline, Ink::Body, 3.0)
     }

@@ -21,9 +21,11 @@ pub(super) fn summary(fits: &[PlateFit], failures: &[String]) -> String {
         .collect();
     let results = if fits.is_empty() { String::new() } else { results(fits) };
     format!(
-        "<header><h1>Horses in motion, fitted</h1>\n<p class=\"lede\">{} to a planar skeleton of 28 bones, all panels of a stride at \
-         once. Each number says how sure it is; each plot says what it rests on.</p>\n\
-         <nav class=\"contents\">{links}<a href=\"#laws\">laws of speed</a><a href=\"#reading\">how to read this</a></nav>\n\
+        "<header><h1>Horses in motion, fitted</h1>\n<p class=\"lede\">{} to a planar skeleton of 28 \
+         bones, all panels of a stride at once. Each number says how sure it is; each plot says what it \
+         rests on.</p>\n\
+         <nav class=\"contents\">{links}<a href=\"#laws\">laws of speed</a><a href=\"#reading\">how to \
+         read this</a></nav>\n\
          {failed}{results}</header>\n",
         counts(fits.len(), failures.len())
     )
@@ -37,7 +39,7 @@ fn counts(fitted: usize, failed: usize) -> String {
     }
 }
 
-const HEAD: [&str; 12] = [
+const HEAD: [&str; 13] = [
     "Gait, plate",
     "Speed",
     "Stride time, s",
@@ -48,15 +50,17 @@ const HEAD: [&str; 12] = [
     "Duty factor hind",
     "Lateral lag",
     "Footfalls, lead",
-    "Residual RMS, worst",
-    "Held out median, 90&#8239;%",
+    "Residual RMS",
+    "Worst residual",
+    "Held out, median and 90th percentile",
 ];
 
 fn results(fits: &[PlateFit]) -> String {
     let rows: Vec<Vec<String>> = fits.iter().enumerate().map(|(i, fit)| row(i, fit)).collect();
     format!(
-        "{}<p class=\"note\">± is one standard deviation. Residuals in px, cm and percent of withers height over all placed points; \
-         held-out errors in percent of withers height over visible points.</p>\n",
+        "{}<p class=\"note\">± is one standard deviation. Residuals in px, cm and percent of withers \
+         height over all placed points; held-out errors in percent of withers height over visible \
+         points.</p>\n",
         table("summary", &HEAD, &rows)
     )
 }
@@ -64,11 +68,12 @@ fn results(fits: &[PlateFit]) -> String {
 fn row(index: usize, fit: &PlateFit) -> Vec<String> {
     let analysis = &fit.analysis;
     let speed = fit.calibration.speed_m_s;
-    let spread = |[value, sd]: [f64; 2], unit: f64, decimals: usize| plus_minus(unit * value, unit * sd, decimals);
+    let spread =
+        |[value, sd]: [f64; 2], unit: f64, decimals: usize| plus_minus(unit * value, unit * sd, decimals);
     vec![
         format!("{}<br/><small><a href=\"#plate-{index}\">{}</a></small>", fit.gait(), escape(fit.id())),
         format!(
-            "{} m/s<br/><small>{} mph</small>",
+            "{}&#160;m/s<br/><small>{}&#160;mph</small>",
             plus_minus(speed.value, speed.sd, 1),
             plus_minus(speed.value / MPS_PER_MPH, speed.sd / MPS_PER_MPH, 1)
         ),
@@ -80,17 +85,22 @@ fn row(index: usize, fit: &PlateFit) -> Vec<String> {
         number(analysis.hind_duty_factor(), 2),
         number(analysis.lateral_lag(), 2),
         footfalls(fit),
-        residual(fit),
+        residual(fit, |values| rms(values.iter().copied())),
+        residual(fit, |values| values.iter().copied().fold(0.0, f64::max)),
         held_out(fit),
     ]
 }
 
 fn footfalls(fit: &PlateFit) -> String {
     let implied = fit.analysis.implied;
-    let verdict = if implied.agrees_with(fit.gait()) { "as titled".into() } else { format!("titled {}", fit.gait()) };
+    let verdict =
+        if implied.agrees_with(fit.gait()) { "as titled".into() } else { format!("titled {}", fit.gait()) };
     let class = if implied.agrees_with(fit.gait()) { "unit" } else { "warning" };
     let lead = fit.analysis.lead.map_or("no lead".to_string(), lead_name);
-    format!("{}<br/><small class=\"{class}\">{verdict}</small><br/><small>{lead}</small>", escape(implied.name()))
+    format!(
+        "{}<br/><small class=\"{class}\">{verdict}</small><br/><small>{lead}</small>",
+        escape(implied.name())
+    )
 }
 
 fn lead_name(lead: Lead) -> String {
@@ -102,23 +112,18 @@ fn lead_name(lead: Lead) -> String {
     }
 }
 
-fn residual(fit: &PlateFit) -> String {
-    let all = |f: fn(&PointResidual) -> f64| fit.residuals.iter().map(f);
-    let line = |px: f64, metres: f64| {
-        format!("{px:.1} px, {:.1} cm, {:.1} %", 100.0 * metres, 100.0 * metres / fit.withers_height_m)
-    };
-    let worst = |f: fn(&PointResidual) -> f64| all(f).fold(0.0, f64::max);
-    format!(
-        "{}<br/><small>{}</small>",
-        line(rms(all(PointResidual::px)), rms(all(PointResidual::metres))),
-        line(worst(PointResidual::px), worst(PointResidual::metres))
-    )
+/// One figure of all residuals in px, cm, and percent of withers height.
+fn residual(fit: &PlateFit, of: fn(&[f64]) -> f64) -> String {
+    let all = |f: fn(&PointResidual) -> f64| of(&fit.residuals.iter().map(f).collect::<Vec<_>>());
+    let (px, metres) = (all(PointResidual::px), all(PointResidual::metres));
+    let percent = 100.0 * metres / fit.withers_height_m;
+    format!("{px:.1} px<br/><small>{:.1} cm<br/>{percent:.1} %</small>", 100.0 * metres)
 }
 
 fn held_out(fit: &PlateFit) -> String {
     let errors: Vec<f64> = fit.held_out.iter().map(|r| 100.0 * r.metres() / fit.withers_height_m).collect();
     if errors.is_empty() {
-        return "none visible".into();
+        return "nothing visible".into();
     }
     format!("{:.1} %<br/><small>{:.1} %</small>", quantile(&errors, 0.5), quantile(&errors, 0.9))
 }

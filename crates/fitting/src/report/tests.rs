@@ -24,7 +24,12 @@ fn plate() -> &'static PlateFit {
 
 fn page() -> String {
     let fits = std::slice::from_ref(plate());
-    html(fits, &gait_laws(fits), &["bad-plate.json: panel 3: <marks> & ground".into()], &Skeleton::reference())
+    html(
+        fits,
+        &gait_laws(fits),
+        &["bad-plate.json: panel 3: <marks> & ground".into()],
+        &Skeleton::reference(),
+    )
 }
 
 /// Every tag closed in the right order, attributes quoted, no stray brackets or ampersands.
@@ -35,7 +40,10 @@ fn check_well_formed(page: &str) {
         assert!(!rest[..at].contains('>'), "stray bracket near {}", &rest[..at]);
         for reference in rest[..at].split('&').skip(1) {
             let name = reference.split(';').next().unwrap();
-            assert!(reference.contains(';') && name.len() < 8 && !name.contains(' '), "stray ampersand: {reference}");
+            assert!(
+                reference.contains(';') && name.len() < 8 && !name.contains(' '),
+                "stray ampersand: {reference}"
+            );
         }
         let end = at + rest[at..].find('>').unwrap();
         let tag = &rest[at + 1..end];
