@@ -94,7 +94,7 @@ impl Workspace {
         self.edit(&annotation, |document| {
             document["plate"] = format!("../plates/{id}.json").into();
             for (index, panel) in document["panels"].as_array_mut().unwrap().iter_mut().enumerate() {
-                // Panels 1, 4, 5, 6, 8 and 10 are enough, with a hoof in stance twice and the standing panel 12.
+                // Panels 1, 4, 5, 6, 8 and 10 are enough, with the standing panel 12.
                 if [2, 3, 7, 9, 11].contains(&(index + 1)) {
                     panel["use"] = "unused".into();
                     panel["keypoints"] = serde_json::json!({});
@@ -105,6 +105,10 @@ impl Workspace {
         self.edit(&manifest, |document| {
             document["id"] = id.into();
             document["images"][0]["file"] = format!("{id}.jpg").into();
+            // So few panels need not show a hoof in stance twice.
+            document["calibration"]["scale"]["known_length"]["plane"] = serde_json::json!({
+                "wall": { "ratio": { "value": 1.19, "sd": 0.02, "assumed": true, "from": "the whole plate" } }
+            });
         });
     }
 }

@@ -15,12 +15,13 @@ use muybridge_fitting::gait_analysis::GaitAnalysis;
 use muybridge_fitting::motion_database::build_database;
 use muybridge_fitting::observation::StrideObservation;
 use muybridge_fitting::pipeline::{PlateFit, fit_plate};
-use muybridge_fitting::stride_fit::{StrideTime, fit_stride};
+use muybridge_fitting::stride_fit::{PointResidual, StrideTime, fit_stride};
 use muybridge_fitting::weights::Weights;
 use muybridge_tests::{SALLIE, repository, write};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use random_edit::{Edit, edit};
+use serde_json::Value;
 use tempfile::TempDir;
 
 /// Documents damaged, calibrated and fitted without the points left out in turn.
@@ -37,7 +38,7 @@ fn runner(cases: u32) -> TestRunner {
 
 /// The repository's two documents after some edits, in a folder of their own.
 struct Damaged {
-    _folder: TempDir,
+    folder: TempDir,
     annotation: PathBuf,
 }
 
@@ -54,7 +55,12 @@ impl Damaged {
             write(&folder.path().join(kind).join(format!("{SALLIE}.json")), text);
         }
         let annotation = folder.path().join("annotations").join(format!("{SALLIE}.json"));
-        Self { _folder: folder, annotation }
+        Self { folder, annotation }
+    }
+
+    /// The annotation's or the manifest's path, by its folder.
+    fn path(&self, kind: &str) -> PathBuf {
+        self.folder.path().join(kind).join(format!("{SALLIE}.json"))
     }
 }
 
@@ -72,7 +78,9 @@ fn fit_once(path: &Path) -> Result<Option<PlateFit>, TestCaseError> {
     let stride_time = StrideTime { seconds: 0.94 * observation.duration_s(), sd_s: 0.01 };
     let fit = fit_stride(&skeleton, &observation, stride_time, &weights);
     let withers_height_m = fit.withers_height_m(&skeleton);
-    let Ok(contacts) = find_contacts(&fit, &plate.annotation.instants, withers_height_m) else { return Ok(None) };
+    let Ok(contacts) = find_contacts(&fit, &plate.annotation.instants, withers_height_m) else {
+        return Ok(None);
+    };
     let analysis = GaitAnalysis::new(contacts, [stride_time.seconds, stride_time.sd_s]);
     let residuals = fit.residuals_of(&observation);
     let (held_out, warnings) = (Vec::new(), Vec::new());
@@ -80,7 +88,7 @@ fn fit_once(path: &Path) -> Result<Option<PlateFit>, TestCaseError> {
 }
 
 fn refused(message: &str) -> Result<Option<PlateFit>, TestCaseError> {
-    prop_assert!(message.contains(&format!("{SALLIE}.json")) || message.contains(".json:"), "no file in {message}");
+    prop_assert!(message.contains(&format!("{SALLIE}.json: ")), "no file in {message}");
     Ok(None)
 }
 
@@ -90,7 +98,7 @@ fn require_finite(fitted: &PlateFit) -> Result<(), TestCaseError> {
     let estimates = [calibration.speed_m_s, calibration.interval_s];
     let mut numbers: Vec<f64> = estimates.iter().flat_map(|e| [e.value, e.sd]).collect();
     numbers.extend(calibration.disagreements.iter().flat_map(|d| [d.used.1.value, d.other.1.value]));
-    numbers.extend(fitted.residuals.iter().chain(&fitted.held_out).map(|residual| residual.metres()));
+    numbers.extend(fitted.residuals.iter().chain(&fitted.held_out).map(PointResidual::metres));
     numbers.extend(fitted.analysis.contacts.iter().flat_map(|c| [c.duty_factor(), c.duty_factor_sd()]));
     numbers.extend(fitted.analysis.stride_time_s);
     numbers.extend(fitted.analysis.support_s());
@@ -126,9 +134,47 @@ fn damaged_documents_are_refused_with_a_name_or_give_finite_numbers() {
         }
         Ok(())
     });
-    println!("{} of {CASES} damaged plates could still be fitted", fitted.get());
+    println!("{} damaged plates could still be fitted", fitted.get());
     result.unwrap_or_else(|failure| panic!("{failure}"));
     assert!(fitted.get() >= CASES / 10, "edits so rough that nothing is left to fit test little");
+}
+
+/// Numbers of a document that are not lists', as JSON pointers.
+fn numbers(document: &Value, at: &str, found: &mut Vec<String>) {
+    match document {
+        Value::Number(_) => found.push(at.to_string()),
+        Value::Object(fields) => {
+            fields.iter().for_each(|(key, value)| numbers(value, &format!("{at}/{key}"), found));
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn absurd_numbers_of_calibration_and_head_are_refused_or_borne() {
+    let good = Damaged::new(&[]);
+    for (kind, driven_by) in [("plates", "interval"), ("plates", "speed"), ("annotations", "speed")] {
+        let manifest = good.path("plates");
+        let mut document: Value = serde_json::from_str(&std::fs::read_to_string(&manifest).unwrap()).unwrap();
+        document["calibration"]["time"]["driven_by"] = driven_by.into();
+        write(&manifest, &document.to_string());
+        let path = good.path(kind);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let document: Value = serde_json::from_str(&text).unwrap();
+        let mut places = Vec::new();
+        numbers(&document, "", &mut places);
+        for place in &places {
+            for value in [-1.0, 0.0, 1e-300, 1e-3, 1e3, 1e300] {
+                let mut damaged = document.clone();
+                *damaged.pointer_mut(place).unwrap() = value.into();
+                write(&path, &damaged.to_string());
+                let result =
+                    fit_once(&good.annotation).and_then(|fit| fit.as_ref().map_or(Ok(()), require_finite));
+                result.unwrap_or_else(|failure| panic!("{kind}{place} = {value:e}: {failure}"));
+            }
+        }
+        write(&path, &text);
+    }
 }
 
 #[test]

@@ -117,11 +117,14 @@ fn core_and_capture_stay_small() {
 #[test]
 fn every_crate_keeps_the_lints_and_is_in_the_architecture() {
     let path = repository().join("ARCHITECTURE.md");
-    let architecture = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("ARCHITECTURE.md: {error}"));
+    let architecture =
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("ARCHITECTURE.md: {error}"));
     for package in metadata().workspace_packages() {
         let manifest = std::fs::read_to_string(&package.manifest_path).unwrap();
         assert!(manifest.contains("[lints]\nworkspace = true"), "{}: no workspace lints", package.name);
-        let named = architecture.split(|c: char| !(c.is_alphanumeric() || c == '-')).any(|w| w == package.name.as_str());
+        let named = architecture
+            .split(|c: char| !(c.is_alphanumeric() || c == '-'))
+            .any(|w| w == package.name.as_str());
         assert!(named, "ARCHITECTURE.md does not name {}", package.name);
     }
 }
@@ -186,12 +189,14 @@ fn program_call(command: &str) -> Option<(&str, Vec<&str>)> {
 
 #[test]
 fn commands_in_the_readme_exist() {
-    let text = std::fs::read_to_string(repository().join("README.md")).unwrap_or_else(|error| panic!("README.md: {error}"));
+    let text = std::fs::read_to_string(repository().join("README.md"))
+        .unwrap_or_else(|error| panic!("README.md: {error}"));
     let commands = fenced_commands(&text);
     let calls: Vec<_> = commands.iter().filter_map(|command| program_call(command)).collect();
     assert!(calls.iter().any(|(name, _)| *name == "fit-gaits"), "the README shows how to run the main job");
     for (name, words) in calls {
-        let is_subcommand = |word: &&&str| name == "muybridge" && word.chars().all(|c| c.is_ascii_lowercase());
+        let is_subcommand =
+            |word: &&&str| name == "muybridge" && word.chars().all(|c| c.is_ascii_lowercase());
         let subcommands: Vec<&str> = words.iter().take(2).take_while(is_subcommand).copied().collect();
         let run = Run::of(Command::new(program(name)).args(&subcommands).arg("--help")).expect_code(0);
         for flag in words.iter().filter(|word| word.starts_with("--")) {

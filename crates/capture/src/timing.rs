@@ -6,12 +6,10 @@ use crate::annotation::PanelAnnotation;
 use crate::calibration::{CalibrationError, Context, Disagreement, Estimate, PanelCamera};
 use crate::keypoint::{BodyPoint, Keypoint};
 use crate::manifest::{Known, Position, TimeSource};
+use crate::validation::SPEEDS_M_S;
 
 /// Trunk points that ride with the body; head and neck nod.
 const TRUNK: [BodyPoint; 4] = [BodyPoint::Withers, BodyPoint::Back, BodyPoint::Croup, BodyPoint::Dock];
-
-/// Greatest speed that is believed of a horse, m/s: half as fast again as any was ever timed at.
-const GREATEST_SPEED_M_S: f64 = 30.0;
 
 /// Times and speed of a stride's panels.
 pub(crate) struct Timing {
@@ -31,7 +29,8 @@ pub(crate) fn panel_times(
     let panels = context.stride_panels();
     let advance_m = trunk_advance(&panels, cameras);
     // Panels left out of the stride leave their intervals in it.
-    let gaps = panels.first().zip(panels.last()).map_or(0.0, |(a, b)| f64::from(b.panel) - f64::from(a.panel));
+    let gaps =
+        panels.first().zip(panels.last()).map_or(0.0, |(a, b)| f64::from(b.panel) - f64::from(a.panel));
     let distance_m = advance_m.last().copied().unwrap_or(0.0);
     let stated_interval = time.interval_s.as_ref().map(estimate);
     let stated_speed = time.speed_m_s.as_ref().map(estimate);
@@ -55,9 +54,9 @@ pub(crate) fn panel_times(
         TimeSource::Interval | TimeSource::StrideTime => relative_time_sd,
     };
     let (interval, speed) = (duration_s / gaps, distance_m / duration_s);
-    if !(speed > 0.0 && speed <= GREATEST_SPEED_M_S) {
+    if !(speed > SPEEDS_M_S[0] && speed <= SPEEDS_M_S[1]) {
         return Err(CalibrationError::Contradiction(format!(
-            "time: the trunk moves forward by {distance_m:.2} m in {duration_s:.3} s, and no horse does; \
+            "time: the trunk moves forward by {distance_m:.2} m in {duration_s:.3} s, which no horse does; \
              check the facing direction, the scale and the intervals"
         )));
     }

@@ -12,6 +12,12 @@ use crate::manifest::{
 const MIN_POINTS_PER_PANEL: usize = 6;
 /// Fewest panels for a stride: a cyclic curve through fewer says nothing about contacts.
 const MIN_STRIDE_PANELS: usize = 4;
+/// Speeds that are believed of a horse, m/s: from a step in ten seconds to half as fast again as any was ever timed at.
+pub(crate) const SPEEDS_M_S: [f64; 2] = [0.1, 30.0];
+/// Durations that are believed of an interval or a stride, s; panels closer than the least have one and the same time.
+const DURATIONS_S: [f64; 2] = [1e-4, 10.0];
+/// Lengths that are believed of a spacing of marks or cameras, m.
+const SPACINGS_M: [f64; 2] = [1e-3, 100.0];
 /// A point may lie this far outside its panel, px: hooves and noses touch the mount.
 const PANEL_MARGIN_PX: f64 = 12.0;
 
@@ -92,7 +98,8 @@ impl Plate {
             }]));
         }
         let manifest_path = annotation_path.parent().unwrap_or(Path::new(".")).join(relative);
-        let manifest: Manifest = read_json(&manifest_path, MANIFEST_SCHEMA)?;
+        let manifest: Manifest = read_json(&manifest_path, MANIFEST_SCHEMA)
+            .map_err(|error| unreadable_manifest(annotation_path, error))?;
         let mut faults = Faults { path: manifest_path.clone(), found: Vec::new() };
         faults.identifier(&manifest);
         faults.manifest(&manifest);
@@ -116,6 +123,17 @@ impl Plate {
     pub fn image_path(&self, index: usize) -> PathBuf {
         image_path(&self.manifest_path, &self.manifest.images[index].file)
     }
+}
+
+/// A manifest that is not there is more likely a wrong name in the annotation.
+fn unreadable_manifest(annotation_path: &Path, error: FileError) -> PlateError {
+    let FileError::Read { path, source } = error else { return error.into() };
+    let message = format!(
+        "the manifest {} cannot be read ({source}); correct the path or restore the file",
+        path.display()
+    );
+    let path = annotation_path.to_path_buf();
+    PlateError::Faults(vec![Fault { path, panel: None, field: "plate".into(), message }])
 }
 
 fn image_path(manifest_path: &Path, file: &str) -> PathBuf {
@@ -228,7 +246,7 @@ impl Faults {
         self.known(
             "calibration.scale.known_length.mark_spacing_m",
             length.map(|l| &l.mark_spacing_m),
-            [0.0, 100.0],
+            SPACINGS_M,
         );
         match length.map(|l| &l.plane) {
             Some(Plane::Wall(Parallax::Ratio(known))) => {
@@ -261,7 +279,7 @@ impl Faults {
         };
         self.check(given, None, "calibration.scale.driven_by", "names a source that is not given");
         if let Position::CameraSpacing { spacing_m, first_axis_mark } = &calibration.position {
-            self.known("calibration.position.spacing_m", Some(spacing_m), [0.0, 100.0]);
+            self.known("calibration.position.spacing_m", Some(spacing_m), SPACINGS_M);
             self.check(
                 first_axis_mark.abs() < 1e4,
                 None,
@@ -276,16 +294,16 @@ impl Faults {
 
     fn time(&mut self, calibration: &Calibration) {
         let time = &calibration.time;
-        self.known("calibration.time.interval_s", time.interval_s.as_ref(), [0.0, 10.0]);
-        self.known("calibration.time.speed_m_s", time.speed_m_s.as_ref(), [0.0, 30.0]);
-        self.known("calibration.time.stride_time_s", time.stride_time_s.as_ref(), [0.0, 10.0]);
+        self.known("calibration.time.interval_s", time.interval_s.as_ref(), DURATIONS_S);
+        self.known("calibration.time.speed_m_s", time.speed_m_s.as_ref(), SPEEDS_M_S);
+        self.known("calibration.time.stride_time_s", time.stride_time_s.as_ref(), DURATIONS_S);
         for (i, interval) in time.intervals_s.iter().flatten().enumerate() {
-            let good = *interval > 0.0 && *interval <= 10.0;
+            let good = *interval > DURATIONS_S[0] && *interval <= DURATIONS_S[1];
             self.check(
                 good,
                 None,
                 &format!("calibration.time.intervals_s[{i}]"),
-                "must be more than 0 and at most 10 s: two panels cannot have the same time",
+                "must be more than 0.0001 and at most 10 s: two panels cannot have the same time",
             );
         }
         let given = match time.driven_by {

@@ -117,16 +117,6 @@ impl BoundedLevenbergMarquardt {
                 damped.refuse();
                 continue;
             }
-            if std::env::var("LMT").is_ok() {
-                eprintln!(
-                    "cost {:.6} dec {:.3e} pred {:.3e} lam {:.1e} pinned {}",
-                    cost,
-                    decrease,
-                    predicted,
-                    damped.damping,
-                    pinned.iter().filter(|p| **p).count()
-                );
-            }
             damped.accept(decrease / predicted);
             damped.converged = decrease <= tiny;
             let near = decrease < FULL_CURVATURE_BELOW * cost;

@@ -65,14 +65,19 @@ pub(crate) fn files() -> Vec<Case> {
             "annotation in another encoding",
             |w| {
                 muybridge_capture::write_atomically(&w.path(A), b"{\"schema\": 1, \"plate\": \"\xe9\"}")
-                    .unwrap()
+                    .unwrap();
             },
             &[A, "cannot be read", "UTF-8"],
         ),
         fault(
             "missing manifest",
             |w| std::fs::remove_file(w.path(M)).unwrap(),
-            &[M, "cannot be read", "check the path"],
+            &[A, "plate: the manifest", M, "cannot be read", "correct the path"],
+        ),
+        fault(
+            "no manifest named",
+            |w| w.edit(A, |a| a["plate"] = "".into()),
+            &[A, "plate: the manifest", "cannot be read", "correct the path"],
         ),
         fault("empty manifest", |w| w.write(M, ""), &[M, "the file is empty", "restore"]),
         fault(
@@ -380,7 +385,9 @@ pub(crate) fn calibrations() -> Vec<Case> {
         fault(
             "scale of nothing",
             |w| {
-                w.edit(M, |m| m["calibration"]["scale"]["known_length"]["mark_spacing_m"]["value"] = 0.into())
+                w.edit(M, |m| {
+                    m["calibration"]["scale"]["known_length"]["mark_spacing_m"]["value"] = 0.into();
+                });
             },
             &[M, "calibration.scale.known_length.mark_spacing_m.value", "out of range", "more than 0"],
         ),

@@ -39,8 +39,26 @@ pub(crate) enum Edit {
 
 /// Values that a field hardly ever holds.
 const VALUES: [&str; 20] = [
-    "null", "0", "-1", "1e-300", "1e300", "-1e300", "1e999", "NaN", "Infinity", "18446744073709551616", "true",
-    "\"NaN\"", "\"\"", "\"stance\"", "[]", "{}", "[0, 0]", "[[1e300, 0], [0, 1e300]]", "0.001", "1000",
+    "null",
+    "0",
+    "-1",
+    "1e-300",
+    "1e300",
+    "-1e300",
+    "1e999",
+    "NaN",
+    "Infinity",
+    "18446744073709551616",
+    "true",
+    "\"NaN\"",
+    "\"\"",
+    "\"stance\"",
+    "[]",
+    "{}",
+    "[0, 0]",
+    "[[1e300, 0], [0, 1e300]]",
+    "0.001",
+    "1000",
 ];
 const LABELS: [&str; 3] = ["stance", "swing", "unknown"];
 const LEGS: [&str; 4] = ["near_fore", "off_fore", "near_hind", "off_hind"];
@@ -166,25 +184,23 @@ impl Edit {
     }
 
     fn annotate(&self, annotation: &mut Value) {
-        let Some(panels) = annotation["panels"].as_array_mut().filter(|panels| !panels.is_empty()) else { return };
-        let n = panels.len();
-        let mut label = |panel: usize, leg: usize, label: u8| {
-            if panels[panel % n].is_object() && panels[panel % n]["contacts"].is_object() {
-                panels[panel % n]["contacts"][LEGS[leg]] = LABELS[usize::from(label) % LABELS.len()].into();
-            }
-        };
+        let n = annotation.get("panels").and_then(Value::as_array).map_or(0, Vec::len);
+        if n == 0 {
+            return;
+        }
+        let leg = |i: usize| format!("/panels/{}/contacts/{}", i / 4 % n, LEGS[i % 4]);
+        let label = |value: u8| LABELS[usize::from(value) % LABELS.len()].into();
         match self {
-            Self::Labels(labels) => labels.iter().enumerate().for_each(|(i, value)| label(i / 4, i % 4, *value)),
-            Self::SameLabels(value) => (0..4 * n).for_each(|i| label(i / 4, i % 4, *value)),
+            Self::Labels(values) => {
+                values.iter().enumerate().for_each(|(i, value)| set(annotation, &leg(i), label(*value)));
+            }
+            Self::SameLabels(value) => (0..4 * n).for_each(|i| set(annotation, &leg(i), label(*value))),
             Self::Unused(panel) => {
-                if let Some(panel) = panels[panel.index(n)].as_object_mut() {
-                    panel.insert("use".into(), "unused".into());
-                }
+                set(annotation, &format!("/panels/{}/use", panel.index(n)), "unused".into());
             }
             Self::RemovePoints(panel, points) => {
-                let Some(fields) = panels[panel.index(n)].get_mut("keypoints").and_then(Value::as_object_mut) else {
-                    return;
-                };
+                let place = annotation.pointer_mut(&format!("/panels/{}/keypoints", panel.index(n)));
+                let Some(fields) = place.and_then(Value::as_object_mut) else { return };
                 for point in points {
                     let name = fields.keys().nth(point.index(fields.len().max(1))).cloned();
                     name.map(|name| fields.remove(&name));
@@ -192,6 +208,13 @@ impl Edit {
             }
             _ => {}
         }
+    }
+}
+
+/// Replaces the value in a place, if there is one.
+fn set(document: &mut Value, pointer: &str, value: Value) {
+    if let Some(place) = document.pointer_mut(pointer) {
+        *place = value;
     }
 }
 
@@ -227,31 +250,24 @@ fn follow<'a>(value: &'a mut Value, way: &[Option<Index>]) -> Option<&'a mut Val
 
 /// Sources of a manifest's calibration by four throws of a die.
 fn sources_of(manifest: &mut Value, [scale, plane, position, time]: [u8; 4]) {
-    if !manifest.is_object() || !manifest["calibration"].is_object() {
-        return;
-    }
     let known = |value: f64| json!({ "value": value, "sd": 0.01, "assumed": true, "from": "thrown" });
-    let calibration = &mut manifest["calibration"];
-    for part in ["scale", "time"] {
-        if !calibration[part].is_object() {
-            return;
-        }
-    }
-    calibration["scale"]["driven_by"] = ["known_length", "withers_height"][usize::from(scale) % 2].into();
-    if calibration["scale"]["known_length"].is_object() {
-        calibration["scale"]["known_length"]["plane"] = match plane % 4 {
-            0 => "track".into(),
-            1 => json!({ "wall": "from_stance" }),
-            2 => json!({ "wall": { "ratio": known(1.15) } }),
-            _ => json!({ "wall": { "distances": { "camera_to_track_m": 12.0, "camera_to_wall_m": 14.0 } } }),
-        };
-    }
-    calibration["position"] = match position % 4 {
+    let choice = |names: &[&str], throw: u8| Value::from(names[usize::from(throw) % names.len()]);
+    let plane = match plane % 4 {
+        0 => "track".into(),
+        1 => json!({ "wall": "from_stance" }),
+        2 => json!({ "wall": { "ratio": known(1.15) } }),
+        _ => json!({ "wall": { "distances": { "camera_to_track_m": 12.0, "camera_to_wall_m": 14.0 } } }),
+    };
+    let position = match position % 4 {
         0 => json!({ "kind": "fixed_camera" }),
         1 => json!({ "kind": "fixed_mark", "mark": 7.5 }),
         2 => json!({ "kind": "camera_spacing", "spacing_m": known(0.3), "first_axis_mark": 4.0 }),
         _ => json!({ "kind": "camera_spacing", "spacing_m": known(0.6858), "first_axis_mark": 3.7 }),
     };
-    calibration["time"]["driven_by"] = ["interval", "speed", "stride_time"][usize::from(time) % 3].into();
-    calibration["time"]["stride_time_s"] = known(0.45);
+    let mut set = |place: &str, value: Value| set(manifest, &format!("/calibration/{place}"), value);
+    set("scale/driven_by", choice(&["known_length", "withers_height"], scale));
+    set("scale/known_length/plane", plane);
+    set("position", position);
+    set("time/driven_by", choice(&["interval", "speed", "stride_time"], time));
+    set("time/stride_time_s", known(0.45));
 }
