@@ -169,7 +169,7 @@ fn run_scipy(file: &Path, name: &str, own_s: f64) -> Result<(), Box<dyn Error>> 
         let case: serde_json::Value = serde_json::from_str(line)?;
         let number = |key: &str| case[key].as_f64().unwrap_or(f64::NAN);
         let ratio = number("seconds") / own_s;
-        let verdict = if ratio >= LEAST_RATIO { "" } else { "  MISSED" };
+        let verdict = if ratio >= LEAST_RATIO { "" } else { "  under 10" };
         let case_name = format!("{name}, scipy {}", case["case"].as_str().unwrap_or("?"));
         let (seconds, cost, distance) = (number("seconds"), number("cost"), number("relative_distance"));
         let note = case["note"].as_str().unwrap_or("");

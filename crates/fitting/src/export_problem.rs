@@ -175,6 +175,8 @@ impl ExportedProblem {
         for row in &problem.stances {
             self.add_place(problem, row.slot, row.toe, [0.0, 1.0 / height_sd]);
             self.finish_row(0.0, false);
+        }
+        for row in &problem.stances {
             if let Some((after, ahead_m)) = row.next {
                 self.add_place(problem, row.slot, row.toe, [1.0 / slip_sd, 0.0]);
                 self.add_place(problem, after, row.toe, [-1.0 / slip_sd, 0.0]);

@@ -286,58 +286,55 @@ impl StrideProblem {
             .collect()
     }
 
-    /// Visits every nonlinear residual. `derivatives` asks for sparse derivatives as well.
-    fn visit_nonlinear(
+    /// The residuals that depend on one point each: placed points, then stance heights.
+    fn point_terms(&self, kinematics: &[Kinematics]) -> impl Iterator<Item = PointTerm> {
+        let placed = self.points.iter().map(|row| {
+            let [x, y] = kinematics[row.slot].place(row.point);
+            let slopes = [0, 1].map(|axis| [row.columns[0][axis], row.columns[1][axis]]);
+            let values = [0, 1].map(|axis| row.constant[axis] + x * slopes[axis][0] + y * slopes[axis][1]);
+            PointTerm { slot: row.slot, point: row.point, values, slopes, loss: Loss::Cauchy }
+        });
+        let per_height = 1.0 / self.weights.stance_height_sd;
+        let heights = self.stances.iter().map(move |row| {
+            let values = [kinematics[row.slot].place(row.toe)[1] * per_height, 0.0];
+            let slopes = [[0.0, per_height], [0.0; 2]];
+            PointTerm { slot: row.slot, point: row.toe, values, slopes, loss: Loss::Square }
+        });
+        placed.chain(heights)
+    }
+
+    /// The residuals that hold a toe in stance in its place from one panel to the next.
+    fn slip_terms(&self, kinematics: &[Kinematics]) -> impl Iterator<Item = SlipTerm> {
+        let per_slip = 1.0 / self.weights.stance_slip_sd;
+        self.stances.iter().filter_map(move |row| {
+            let (after, ahead_m) = row.next?;
+            let x_m = |slot: usize| kinematics[slot].place(row.toe)[0];
+            let value = (x_m(row.slot) - x_m(after) - ahead_m) * per_slip;
+            Some(SlipTerm { ends: [(row.slot, per_slip), (after, -per_slip)], toe: row.toe, value })
+        })
+    }
+
+    /// Derivatives of a point's place with respect to the unknowns it depends on.
+    fn place_derivatives(
         &self,
-        kinematics: &[Kinematics],
-        derivatives: bool,
-        mut visit: impl FnMut(&Residual<'_>),
+        k: &Kinematics,
+        slot: usize,
+        point: Attachment,
+        out: &mut Vec<(usize, Vec2)>,
     ) {
-        let mut rows: [Vec<(usize, f64)>; 2] = [Vec::with_capacity(64), Vec::with_capacity(64)];
-        for row in &self.points {
-            let k = &kinematics[row.slot];
-            let [px, py] = k.place(row.point);
-            rows.iter_mut().for_each(Vec::clear);
-            if derivatives {
-                self.chain.derivatives(k, row.point, |unknown, [dx, dy]| {
-                    let index = self.index(row.slot, unknown);
-                    for axis in 0..2 {
-                        rows[axis].push((index, dx * row.columns[0][axis] + dy * row.columns[1][axis]));
-                    }
-                });
-            }
-            for axis in 0..2 {
-                let slopes = [row.columns[0][axis], row.columns[1][axis]];
-                let value = row.constant[axis] + px * slopes[0] + py * slopes[1];
-                let carriers = [(row.slot, row.point, slopes), NO_CARRIER];
-                visit(&Residual { value, loss: Loss::Cauchy, row: &rows[axis], carriers });
-            }
+        out.clear();
+        self.chain.derivatives(k, point, |unknown, d| out.push((self.index(slot, unknown), d)));
+    }
+
+    /// Sparse derivative of a slip residual.
+    fn slip_row(&self, kinematics: &[Kinematics], term: &SlipTerm) -> Vec<(usize, f64)> {
+        let mut row = Vec::with_capacity(64);
+        for (slot, slope) in term.ends {
+            self.chain.derivatives(&kinematics[slot], term.toe, |unknown, [dx, _]| {
+                row.push((self.index(slot, unknown), dx * slope));
+            });
         }
-        let (per_height, per_slip) = (1.0 / self.weights.stance_height_sd, 1.0 / self.weights.stance_slip_sd);
-        for row in &self.stances {
-            let k = &kinematics[row.slot];
-            let [tx, ty] = k.place(row.toe);
-            rows.iter_mut().for_each(Vec::clear);
-            if derivatives {
-                self.chain.derivatives(k, row.toe, |unknown, [dx, dy]| {
-                    let index = self.index(row.slot, unknown);
-                    rows[0].push((index, dy * per_height));
-                    rows[1].push((index, dx * per_slip));
-                });
-            }
-            let carriers = [(row.slot, row.toe, [0.0, per_height]), NO_CARRIER];
-            visit(&Residual { value: ty * per_height, loss: Loss::Square, row: &rows[0], carriers });
-            let Some((after, ahead_m)) = row.next else { continue };
-            let k = &kinematics[after];
-            if derivatives {
-                self.chain.derivatives(k, row.toe, |unknown, [dx, _]| {
-                    rows[1].push((self.index(after, unknown), -dx * per_slip));
-                });
-            }
-            let value = (tx - k.place(row.toe)[0] - ahead_m) * per_slip;
-            let carriers = [(row.slot, row.toe, [per_slip, 0.0]), (after, row.toe, [-per_slip, 0.0])];
-            visit(&Residual { value, loss: Loss::Square, row: &rows[1], carriers });
-        }
+        row
     }
 
     fn index(&self, slot: usize, unknown: Unknown) -> usize {
@@ -357,10 +354,17 @@ impl StrideProblem {
     /// sparse derivatives: for checks and for other solvers.
     pub fn rows(&self, x: &[f64]) -> Vec<(f64, Vec<(usize, f64)>)> {
         let mut all = Vec::with_capacity(self.residual_count());
-        self.visit_nonlinear(&self.kinematics(x), true, |residual| {
-            let (value, slope) = residual.loss.as_residual(residual.value, self.weights.cauchy);
-            all.push((value, residual.row.iter().map(|(i, v)| (*i, v * slope)).collect()));
-        });
+        let kinematics = self.kinematics(x);
+        let mut places = Vec::new();
+        for term in self.point_terms(&kinematics) {
+            self.place_derivatives(&kinematics[term.slot], term.slot, term.point, &mut places);
+            for (value, slopes) in term.values.into_iter().zip(term.slopes).filter(|(_, s)| *s != [0.0; 2]) {
+                let (value, slope) = term.loss.as_residual(value, self.weights.cauchy);
+                let row = places.iter().map(|(i, d)| (*i, slope * dot(slopes, *d)));
+                all.push((value, row.collect()));
+            }
+        }
+        all.extend(self.slip_terms(&kinematics).map(|term| (term.value, self.slip_row(&kinematics, &term))));
         all.extend(self.linear.iter().map(|row| (row.residual(x), row.terms.clone())));
         all
     }
@@ -412,24 +416,34 @@ impl Loss {
     }
 }
 
-/// A point of a slot and the residual's slope along its two coordinates.
-type Carrier = (usize, Attachment, Vec2);
-const NO_CARRIER: Carrier = (0, Attachment::Root, [0.0; 2]);
-
-/// One nonlinear residual.
-struct Residual<'a> {
-    value: f64,
+/// Two residuals of one point: `values` and how each changes with the point's place (zero where there is only one).
+struct PointTerm {
+    slot: usize,
+    point: Attachment,
+    values: [f64; 2],
+    slopes: [Vec2; 2],
     loss: Loss,
-    row: &'a [(usize, f64)],
-    carriers: [Carrier; 2],
+}
+
+/// A residual between a toe in one slot and the same toe in the next: slots with its slope along the track.
+struct SlipTerm {
+    ends: [(usize, f64); 2],
+    toe: Attachment,
+    value: f64,
+}
+
+fn dot([ax, ay]: Vec2, [bx, by]: Vec2) -> f64 {
+    ax * bx + ay * by
 }
 
 impl LeastSquares for &StrideProblem {
     fn cost(&self, x: &[f64]) -> f64 {
+        let kinematics = self.kinematics(x);
         let mut sum = 0.0;
-        self.visit_nonlinear(&self.kinematics(x), false, |residual| {
-            sum += residual.loss.of(residual.value, self.weights.cauchy)[0];
-        });
+        for term in self.point_terms(&kinematics) {
+            sum += term.values.map(|value| term.loss.of(value, self.weights.cauchy)[0]).iter().sum::<f64>();
+        }
+        sum += self.slip_terms(&kinematics).map(|term| 0.5 * term.value * term.value).sum::<f64>();
         self.linear.iter().fold(sum, |sum, row| sum + 0.5 * row.residual(x).powi(2))
     }
 
@@ -440,31 +454,24 @@ impl LeastSquares for &StrideProblem {
             normal: self.linear_normal.clone(),
         };
         let kinematics = self.kinematics(x);
-        self.visit_nonlinear(&kinematics, true, |residual| {
-            let [value, slope, bend] = residual.loss.of(residual.value, self.weights.cauchy);
-            at.cost += value;
-            for (i, v) in residual.row {
-                at.gradient[*i] += slope * v;
+        let mut places = Vec::with_capacity(64);
+        for term in self.point_terms(&kinematics) {
+            self.add_point(&mut at, &kinematics[term.slot], &term, curvature, &mut places);
+        }
+        for term in self.slip_terms(&kinematics) {
+            at.cost += 0.5 * term.value * term.value;
+            let row = self.slip_row(&kinematics, &term);
+            for (i, v) in &row {
+                at.gradient[*i] += term.value * v;
             }
-            match curvature {
-                Curvature::GaussNewton => {
-                    let weight = if residual.value == 0.0 { 1.0 } else { slope / residual.value };
-                    at.normal.add_row(residual.row, weight);
-                }
-                Curvature::Full => {
-                    at.normal.add_row(residual.row, bend);
-                    for (slot, point, slopes) in residual.carriers {
-                        self.add_turning(
-                            &mut at.normal,
-                            &kinematics[slot],
-                            slot,
-                            point,
-                            slopes.map(|s| s * slope),
-                        );
-                    }
+            at.normal.add_row(&row, 1.0);
+            if curvature == Curvature::Full {
+                for (slot, slope) in term.ends {
+                    let pull = [slope * term.value, 0.0];
+                    self.add_turning(&mut at.normal, &kinematics[slot], slot, term.toe, pull);
                 }
             }
-        });
+        }
         for row in &self.linear {
             let residual = row.residual(x);
             at.cost += 0.5 * residual * residual;
@@ -481,6 +488,44 @@ impl LeastSquares for &StrideProblem {
 }
 
 impl StrideProblem {
+    /// Adds a point's two residuals to cost, gradient and second derivatives in one pass over its unknowns.
+    fn add_point(
+        &self,
+        at: &mut Linearization,
+        k: &Kinematics,
+        term: &PointTerm,
+        curvature: Curvature,
+        places: &mut Vec<(usize, Vec2)>,
+    ) {
+        let (mut pull, mut stiffness) = ([0.0; 2], [[0.0; 2]; 2]);
+        for (value, slopes) in term.values.into_iter().zip(term.slopes) {
+            let [cost, slope, bend] = term.loss.of(value, self.weights.cauchy);
+            at.cost += cost;
+            let weight = match curvature {
+                Curvature::GaussNewton if value == 0.0 => 1.0,
+                Curvature::GaussNewton => slope / value,
+                Curvature::Full => bend,
+            };
+            for axis in 0..2 {
+                pull[axis] += slope * slopes[axis];
+                stiffness[axis] =
+                    [0, 1].map(|other| stiffness[axis][other] + weight * slopes[axis] * slopes[other]);
+            }
+        }
+        self.place_derivatives(k, term.slot, term.point, places);
+        for (n, (i, d)) in places.iter().enumerate() {
+            at.gradient[*i] += dot(pull, *d);
+            let stiff = [dot(stiffness[0], *d), dot(stiffness[1], *d)];
+            // No unknown moves a point in two ways, so each pair of indices comes once.
+            for (j, other) in &places[..=n] {
+                at.normal.add(*i, *j, dot(stiff, *other));
+            }
+        }
+        if curvature == Curvature::Full {
+            self.add_turning(&mut at.normal, k, term.slot, term.point, pull);
+        }
+    }
+
     /// Adds the part of the second derivative that comes from the joints' turning.
     fn add_turning(
         &self,
@@ -490,9 +535,6 @@ impl StrideProblem {
         point: Attachment,
         pull: Vec2,
     ) {
-        if pull == [0.0; 2] {
-            return;
-        }
         self.chain.second_derivatives(k, point, pull, |a, b, value| {
             normal.add(self.index(slot, a), self.index(slot, b), value);
         });
