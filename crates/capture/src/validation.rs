@@ -18,6 +18,8 @@ pub(crate) const SPEEDS_M_S: [f64; 2] = [0.1, 30.0];
 const DURATIONS_S: [f64; 2] = [1e-4, 10.0];
 /// Lengths that are believed of a spacing of marks or cameras, m.
 const SPACINGS_M: [f64; 2] = [1e-3, 100.0];
+/// Widest and highest image: four times the largest scan of a plate known to us.
+const LARGEST_IMAGE_PX: u32 = 60_000;
 /// A point may lie this far outside its panel, px: hooves and noses touch the mount.
 const PANEL_MARGIN_PX: f64 = 12.0;
 
@@ -197,10 +199,10 @@ impl Faults {
                 "must be 64 lower-case hexadecimal digits",
             );
             self.check(
-                image.width_px > 0 && image.height_px > 0,
+                [image.width_px, image.height_px].iter().all(|px| (1..=LARGEST_IMAGE_PX).contains(px)),
                 None,
                 &field,
-                "width and height must be positive",
+                "width and height must be between 1 and 60000 px",
             );
             self.check(
                 !Path::new(&image.file).is_absolute(),

@@ -1,5 +1,7 @@
 //! Calibration against plates whose cameras are known: every source of scale, position and time.
 
+#![allow(clippy::unwrap_used, reason = "a test's helpers stop at what must not happen, as its tests do")]
+
 use muybridge_capture::{
     Annotation, BodyPoint, Calibration, Camera, Facing, Keypoint, KeypointState, Keypoints, Known,
     KnownLength, LegContacts, Manifest, Mark, NearOff, Panel, PanelAnnotation, PanelUse, Parallax, Placed,

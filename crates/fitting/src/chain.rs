@@ -257,9 +257,9 @@ mod tests {
                 let moved = |h: f64| {
                     let (mut pose, mut shared) = (pose.clone(), shared.clone());
                     if i < PANEL_DOF {
-                        pose[i] += h
+                        pose[i] += h;
                     } else {
-                        shared[i - PANEL_DOF] += h
+                        shared[i - PANEL_DOF] += h;
                     }
                     chain.kinematics(&pose, &shared).place(point)
                 };
@@ -286,9 +286,9 @@ mod tests {
             let gradient = |at: usize, h: f64| {
                 let (mut pose, mut shared) = (pose.clone(), shared.clone());
                 if at < PANEL_DOF {
-                    pose[at] += h
+                    pose[at] += h;
                 } else {
-                    shared[at - PANEL_DOF] += h
+                    shared[at - PANEL_DOF] += h;
                 }
                 let mut g = vec![0.0; n];
                 let k = chain.kinematics(&pose, &shared);

@@ -8,6 +8,7 @@ use muybridge_capture::{Event, Instant, StanceLabel};
 use muybridge_core::Limb;
 
 use crate::chain::Attachment;
+use crate::observation::PanelObservation;
 use crate::stride_curves::StrideCurves;
 use crate::stride_fit::StrideFit;
 
@@ -18,6 +19,8 @@ const LIFT: f64 = 0.015;
 const SLIP: f64 = 0.04;
 /// Vertical scatter of a fitted toe, share of withers height: sets the uncertainty of an instant found inside a bracket.
 const TOE_SD: f64 = 0.012;
+/// A toe that never comes lower than this share of withers height does not stand: five times the scatter of a ground line.
+const GROUNDED: f64 = 0.1;
 /// Samples of the toe path per stride.
 const SAMPLES: usize = 960;
 
@@ -123,12 +126,13 @@ fn leg_contact(
     instants: &[Instant],
     withers_height_m: f64,
 ) -> Result<LegContact, ContactError> {
-    let run =
-        stance_run(fit, limb).or_else(|| lowest_run(paths, limb)).ok_or(ContactError::NeverDown(limb))?;
-    if run.swing_before >= run.first || run.first - run.swing_before + run.swing_after - run.last > 1.0 + 1e-9
-    {
+    let always = |panel: &PanelObservation| panel.contacts[limb.index()] == StanceLabel::Stance;
+    if fit.observation.panels.iter().all(always) {
         return Err(ContactError::AlwaysDown(limb));
     }
+    let run = stance_run(fit, limb)
+        .or_else(|| lowest_run(paths, limb, withers_height_m))
+        .ok_or(ContactError::NeverDown(limb))?;
     // Where the toe rests: the mean over the stance panels.
     let rests: Vec<[f64; 2]> = run.stances.iter().map(|phase| paths.at(limb, *phase)).collect();
     let n = rests.len() as f64;
@@ -209,10 +213,14 @@ fn stance_run(fit: &StrideFit, limb: Limb) -> Option<StanceRun> {
     best
 }
 
-/// Without labels: around the phase at which the toe is lowest, half a stride either way.
-fn lowest_run(paths: &ToePaths, limb: Limb) -> Option<StanceRun> {
+/// Without labels: around the phase at which the toe is lowest, half a stride either way; none when even there it is
+/// far over the ground.
+fn lowest_run(paths: &ToePaths, limb: Limb, withers_height_m: f64) -> Option<StanceRun> {
     let heights = paths.places[limb.index()].iter().map(|place| place[1]).enumerate();
-    let (k, _) = heights.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (k, height_m) = heights.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    if height_m > GROUNDED * withers_height_m {
+        return None;
+    }
     let lowest = 1.0 + k as f64 / SAMPLES as f64;
     Some(StanceRun {
         swing_before: lowest - 0.5,

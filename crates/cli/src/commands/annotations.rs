@@ -137,7 +137,9 @@ fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
         zoom: arguments.zoom,
         columns: arguments.columns,
     };
-    let picture = sheet.draw(&arguments.panels).context("no panel to draw; check --panels")?;
+    let picture = sheet
+        .draw(&arguments.panels)
+        .context("no panel to draw, or a picture of more than 200 megapixels; check --panels and --zoom")?;
     let out = match &arguments.out {
         Some(out) => out.clone(),
         None => PathBuf::from("target").join(format!("{}.png", plate.manifest.id)),

@@ -18,6 +18,8 @@ const PLACED: Rgb<u8> = Rgb([255, 40, 40]);
 /// Height of the caption under a panel, px.
 const CAPTION: u32 = 26;
 const GAP: u32 = 8;
+/// Largest picture drawn, px: 0.6 GB of memory.
+const LARGEST_PX: u64 = 200_000_000;
 
 /// A contact sheet to be drawn.
 pub(super) struct ContactSheet<'a> {
@@ -54,7 +56,7 @@ impl Crop {
 }
 
 impl ContactSheet<'_> {
-    /// Draws the wanted panels (all, if none is named); none when there is none.
+    /// Draws the wanted panels (all, if none is named); none when there is none, or the picture would be too large.
     pub(super) fn draw(&self, wanted: &[u32]) -> Option<RgbImage> {
         let panels: Vec<(&Panel, &PanelAnnotation)> = self
             .plate
@@ -71,6 +73,10 @@ impl ContactSheet<'_> {
         let cell_height = crops.iter().map(|crop| crop.height).max()? * self.zoom + CAPTION + GAP;
         let columns = self.columns.min(panels.len() as u32);
         let rows = (panels.len() as u32).div_ceil(columns);
+        if u64::from(columns) * u64::from(cell_width) * u64::from(rows) * u64::from(cell_height) > LARGEST_PX
+        {
+            return None;
+        }
         let mut canvas = Canvas::new(columns * cell_width + GAP, rows * cell_height + CAPTION + GAP, PAPER);
         for (i, ((panel, annotation), crop)) in panels.iter().zip(&crops).enumerate() {
             let at = [GAP + i as u32 % columns * cell_width, GAP + i as u32 / columns * cell_height];
