@@ -346,6 +346,21 @@ impl Faults {
         {
             self.check(sd > 0.0 && sd <= 1000.0, None, field, "must be more than 0 and at most 1000 px");
         }
+        let mut last = 0;
+        for panel in &annotation.panels {
+            self.check(
+                panel.panel > last,
+                Some(panel.panel),
+                "panel",
+                "panel numbers must rise without repeats",
+            );
+            last = panel.panel;
+            self.panel(panel, manifest);
+        }
+        self.stride(annotation, manifest);
+    }
+
+    fn stride(&mut self, annotation: &Annotation, manifest: &Manifest) {
         let span = annotation.stride;
         self.check(span.first < span.last, None, "stride", "first must come before last");
         for (end, panel) in [("first", span.first), ("last", span.last)] {
@@ -364,17 +379,6 @@ impl Faults {
                 "stride.closes_after_panels",
                 "must be between 2 and 1000 panels",
             );
-        }
-        let mut last = 0;
-        for panel in &annotation.panels {
-            self.check(
-                panel.panel > last,
-                Some(panel.panel),
-                "panel",
-                "panel numbers must rise without repeats",
-            );
-            last = panel.panel;
-            self.panel(panel, manifest);
         }
         let used = annotation
             .panels

@@ -185,9 +185,12 @@ const SEARCH_SPAN: [f64; 2] = [0.67, 1.2];
 /// Steps of the coarse search; at 0.53 of a span of ten panels a step is a quarter of a panel.
 const SEARCH_STEPS: usize = 22;
 
+/// Rounds of refinement; each halves the bracket, four bring it to a sixtieth of a panel.
+const REFINEMENTS: usize = 4;
+
 /// Fits a stride whose duration is unknown: where does the movement close upon itself?
 ///
-/// The stride time with the least cost, refined by a parabola; its standard deviation from the parabola's curvature
+/// The stride time with the least cost, refined by parabolas; its standard deviation from the last parabola's curvature
 /// (twice the cost rises by one).
 pub fn fit_stride_of_unknown_time(
     skeleton: &Skeleton,
@@ -197,22 +200,27 @@ pub fn fit_stride_of_unknown_time(
     let span_s = observation.duration_s();
     let step_s = span_s * (SEARCH_SPAN[1] - SEARCH_SPAN[0]) / SEARCH_STEPS as f64;
     let exact = |seconds| StrideTime { seconds, sd_s: 0.0 };
-    let first = exact(span_s);
-    let mut latest = fit_stride(skeleton, observation, first, weights);
-    let mut candidates: Vec<StrideFit> = Vec::new();
+    let mut latest = fit_stride(skeleton, observation, exact(span_s), weights);
+    let mut best = latest.clone();
     for i in 0..=SEARCH_STEPS {
         let seconds = span_s * SEARCH_SPAN[0] + i as f64 * step_s;
         latest = refit_stride(skeleton, observation, exact(seconds), weights, &latest);
-        candidates.push(latest.clone());
+        best = better(best, latest.clone());
     }
-    let best = candidates.iter().min_by(|a, b| a.optimum.cost.total_cmp(&b.optimum.cost));
-    let Some(mut best) = best.cloned() else { return latest };
-    let mut half_width_s = step_s;
+    refine_stride_time(skeleton, weights, best, step_s)
+}
+
+/// Closes in on the stride time with the least cost from a fit within `bracket_s` of it.
+fn refine_stride_time(skeleton: &Skeleton, weights: &Weights, start: StrideFit, bracket_s: f64) -> StrideFit {
+    let mut best = start;
+    let mut half_width_s = bracket_s;
     let mut curvature = None;
-    // Each round halves the bracket; three bring it to a thirtieth of a panel.
-    for _ in 0..4 {
+    for _ in 0..REFINEMENTS {
         half_width_s *= 0.5;
-        let at = |seconds: f64| refit_stride(skeleton, observation, exact(seconds), weights, &best);
+        let at = |seconds: f64| {
+            let stride_time = StrideTime { seconds, sd_s: 0.0 };
+            refit_stride(skeleton, &best.observation, stride_time, weights, &best)
+        };
         let middle = best.stride_time.seconds;
         let (low, high) = (at(middle - half_width_s), at(middle + half_width_s));
         let second = low.optimum.cost - 2.0 * best.optimum.cost + high.optimum.cost;
@@ -220,12 +228,12 @@ pub fn fit_stride_of_unknown_time(
             curvature = Some(second / half_width_s.powi(2));
             let shift = 0.5 * half_width_s * (low.optimum.cost - high.optimum.cost) / second;
             let refined = at(middle + shift.clamp(-half_width_s, half_width_s));
-            best = [low, high, refined].into_iter().fold(best.clone(), better);
+            best = [low, high, refined].into_iter().fold(best, better);
         } else {
-            best = [low, high].into_iter().fold(best.clone(), better);
+            best = [low, high].into_iter().fold(best, better);
         }
     }
-    best.stride_time.sd_s = curvature.map_or(step_s, |c| 1.0 / c.sqrt()).max(half_width_s);
+    best.stride_time.sd_s = curvature.map_or(bracket_s, |c| 1.0 / c.sqrt()).max(half_width_s);
     best
 }
 

@@ -2,6 +2,7 @@
 
 use muybridge_core::{Interval, LawKind, Limb, Pair, Provenance};
 use muybridge_fitting::fit_document::rounded;
+use muybridge_fitting::gait_analysis::GaitAnalysis;
 use muybridge_fitting::held_out::quantile;
 use muybridge_fitting::pipeline::PlateFit;
 use muybridge_fitting::stride_fit::{PointResidual, rms};
@@ -57,32 +58,6 @@ fn with_sd([value, sd]: [f64; 2]) -> Value {
 fn stride(fitted: &PlateFit) -> Value {
     let analysis = &fitted.analysis;
     let speed = fitted.calibration.speed_m_s;
-    let limbs: Vec<Value> = analysis
-        .contacts
-        .iter()
-        .map(|contact| {
-            json!({
-                "limb": contact.limb.abbreviation(),
-                "lag": rounded(analysis.lags[contact.limb.index()], 5),
-                "stance_s": rounded(contact.duty_factor() * analysis.stride_time_s[0], 5),
-                "swing_s": rounded((1.0 - contact.duty_factor()) * analysis.stride_time_s[0], 5),
-                "duty_factor": with_sd([contact.duty_factor(), contact.duty_factor_sd()]),
-            })
-        })
-        .collect();
-    let disagreements: Vec<Value> = fitted
-        .calibration
-        .disagreements
-        .iter()
-        .map(|d| {
-            json!({
-                "quantity": d.quantity,
-                "used": { "from": d.used.0, "value": rounded(d.used.1.value, 5), "sd": rounded(d.used.1.sd, 5) },
-                "other": { "from": d.other.0, "value": rounded(d.other.1.value, 5), "sd": rounded(d.other.1.sd, 5) },
-                "percent": rounded(d.percent(), 2),
-            })
-        })
-        .collect();
     json!({
         "plate": fitted.id(),
         "gait": fitted.gait().name(),
@@ -104,15 +79,47 @@ fn stride(fitted: &PlateFit) -> Value {
             "share": with_sd([s.share, s.sd]),
             "gathered": s.is_gathered(),
         })).collect::<Vec<_>>(),
-        "limbs": limbs,
+        "limbs": limbs(analysis),
         "froude": rounded(fitted.froude(), 3),
         "withers_height_m": rounded(fitted.withers_height_m, 4),
         "residual": errors(&fitted.residuals, fitted.withers_height_m),
         "held_out": errors(&fitted.held_out, fitted.withers_height_m),
-        "disagreements": disagreements,
+        "disagreements": disagreements(fitted),
         "warnings": fitted.warnings,
         "annotation_sha256": fitted.plate.annotation_sha256,
     })
+}
+
+fn limbs(analysis: &GaitAnalysis) -> Vec<Value> {
+    analysis
+        .contacts
+        .iter()
+        .map(|contact| {
+            json!({
+                "limb": contact.limb.abbreviation(),
+                "lag": rounded(analysis.lags[contact.limb.index()], 5),
+                "stance_s": rounded(contact.duty_factor() * analysis.stride_time_s[0], 5),
+                "swing_s": rounded((1.0 - contact.duty_factor()) * analysis.stride_time_s[0], 5),
+                "duty_factor": with_sd([contact.duty_factor(), contact.duty_factor_sd()]),
+            })
+        })
+        .collect()
+}
+
+fn disagreements(fitted: &PlateFit) -> Vec<Value> {
+    fitted
+        .calibration
+        .disagreements
+        .iter()
+        .map(|d| {
+            json!({
+                "quantity": d.quantity,
+                "used": { "from": d.used.0, "value": rounded(d.used.1.value, 5), "sd": rounded(d.used.1.sd, 5) },
+                "other": { "from": d.other.0, "value": rounded(d.other.1.value, 5), "sd": rounded(d.other.1.sd, 5) },
+                "percent": rounded(d.percent(), 2),
+            })
+        })
+        .collect()
 }
 
 fn errors(residuals: &[PointResidual], withers_height_m: f64) -> Value {
