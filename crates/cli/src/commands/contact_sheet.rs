@@ -168,13 +168,17 @@ impl ContactSheet<'_> {
         let panels = &fitted.fit.observation.panels;
         if let Some(panel) = panels.iter().find(|p| p.camera.panel == annotation.panel) {
             caption.push_str(&format!("  {:.0} ms", 1000.0 * panel.camera.time_s));
-            let down: Vec<&str> = Limb::ALL
-                .into_iter()
-                .filter(|limb| panel.contacts[limb.index()] == StanceLabel::Stance)
-                .map(Limb::abbreviation)
-                .collect();
-            let down =
-                if down.is_empty() { "in the air".to_string() } else { format!("down: {}", down.join(" ")) };
+            let legs = |label: StanceLabel| -> Vec<&str> {
+                let has = |limb: &Limb| panel.contacts[limb.index()] == label;
+                Limb::ALL.into_iter().filter(has).map(Limb::abbreviation).collect()
+            };
+            let down = match (legs(StanceLabel::Stance), legs(StanceLabel::Unknown)) {
+                (down, unknown) if !unknown.is_empty() => {
+                    format!("down: {} (unknown: {})", down.join(" "), unknown.join(" "))
+                }
+                (down, _) if down.is_empty() => "in the air".to_string(),
+                (down, _) => format!("down: {}", down.join(" ")),
+            };
             caption.push_str(&format!("  {down}"));
         } else {
             caption.push_str("  not part of the stride");
