@@ -328,3 +328,19 @@ fn photograph(folder: &Path) -> Option<std::path::PathBuf> {
         .filter_map(|entry| Some(entry.ok()?.path()))
         .find(|path| hash_file(path).is_ok_and(|hash| hash == wanted))
 }
+
+#[test]
+fn the_catalogue_is_listed_by_gait_and_animal() {
+    let list = |arguments: &[&str]| {
+        let mut command = Command::new(program("muybridge"));
+        command.current_dir(repository()).args(["plates", "list"]).args(arguments).output().unwrap()
+    };
+    let all = String::from_utf8(list(&[]).stdout).unwrap();
+    assert_eq!(all.lines().count(), 76, "a header and plates 574 to 648");
+    let canters = String::from_utf8(list(&["--gait", "canter"]).stdout).unwrap();
+    assert!(canters.contains("616") && canters.lines().skip(1).all(|line| line.contains("canter")));
+    let daisy = String::from_utf8(list(&["--animal", "daisy"]).stdout).unwrap();
+    assert!(daisy.lines().skip(1).all(|line| line.contains("Daisy")) && daisy.lines().count() > 2);
+    assert_eq!(list(&["--animal", "bucephalus"]).status.code(), Some(1));
+    assert_eq!(list(&["--gait", "prance"]).status.code(), Some(2));
+}

@@ -7,6 +7,7 @@
 
 mod annotation;
 mod calibration;
+mod catalogue;
 mod files;
 mod keypoint;
 mod line;
@@ -20,6 +21,7 @@ pub use annotation::{
     PanelAnnotation, PanelUse, Placed, PlacedBy, StanceLabel, StrideSpan,
 };
 pub use calibration::{CalibrationError, Disagreement, Estimate, PanelCamera, PlateCalibration, calibrate};
+pub use catalogue::{CATALOGUE_SCHEMA, Catalogue, CataloguePlate};
 pub use files::{
     FileError, Hash, hash_file, read_json, read_text, to_stable_json, write_atomically, write_json,
 };

@@ -3,6 +3,7 @@
 mod annotations;
 mod canvas;
 mod contact_sheet;
+mod plates;
 mod repeatability;
 
 use std::process::ExitCode;
@@ -24,12 +25,16 @@ enum Command {
     /// Look at annotations: `show`, `check`, `compare`.
     #[command(subcommand)]
     Annotations(annotations::AnnotationsCommand),
+    /// Which plates there are: `list`.
+    #[command(subcommand)]
+    Plates(plates::PlatesCommand),
 }
 
 /// Runs the program.
 pub fn run(arguments: &Muybridge) -> ExitCode {
     let result = match &arguments.command {
         Command::Annotations(command) => command.run(),
+        Command::Plates(command) => command.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
