@@ -206,8 +206,13 @@ pub struct Optimum {
 
 /// Solves a problem from a start, through argmin's executor.
 pub fn solve<P: LeastSquares>(problem: P, start: Vec<f64>) -> Optimum {
+    solve_within(problem, start, MAX_STEPS)
+}
+
+/// Solves a problem from a start in at most so many accepted steps.
+pub fn solve_within<P: LeastSquares>(problem: P, start: Vec<f64>, steps: u64) -> Optimum {
     let result = Executor::new(problem, BoundedLevenbergMarquardt::default())
-        .configure(|state: Iterate| state.param(start).max_iters(MAX_STEPS))
+        .configure(|state: Iterate| state.param(start).max_iters(steps))
         .timer(false)
         .run()
         .unwrap_or_else(|error| {

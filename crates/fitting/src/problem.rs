@@ -369,6 +369,13 @@ impl StrideProblem {
         all
     }
 
+    /// The same problem with another Cauchy scale.
+    pub(crate) fn with_cauchy(&self, cauchy: f64) -> Self {
+        let mut other = self.clone();
+        other.weights.cauchy = cauchy;
+        other
+    }
+
     /// Length of a bone, m.
     pub fn bone_length_m(&self, bone: usize, shared: &[f64]) -> f64 {
         self.chain.length_m(bone, shared)

@@ -5,7 +5,7 @@ use muybridge_core::Skeleton;
 
 use crate::chain::{Attachment, Kinematics};
 use crate::layout::{LOG_SCALE, PANEL_DOF};
-use crate::levenberg::{Curvature, LeastSquares, Optimum, solve};
+use crate::levenberg::{Curvature, LeastSquares, Optimum, solve, solve_within};
 use crate::observation::{StrideObservation, attachment, depth_m};
 use crate::problem::StrideProblem;
 use crate::weights::Weights;
@@ -151,8 +151,21 @@ pub fn fit_stride(
 ) -> StrideFit {
     let problem = StrideProblem::new(skeleton, observation, stride_time.seconds, weights);
     let start = problem.rest_start(observation);
-    let optimum = solve(&problem, start);
+    let optimum = solve_from_afar(&problem, start);
     StrideFit { observation: observation.clone(), problem, optimum, stride_time }
+}
+
+/// Factor on the Cauchy scale for the first steps from a far start: points that lie far off only because the start is bad
+/// then still pull, and the loss has one minimum for longer.
+const TOLERANT: f64 = 4.0;
+/// Steps taken so.
+const TOLERANT_STEPS: u64 = 4;
+
+/// Solves a stride from a start that may be far off.
+pub fn solve_from_afar(problem: &StrideProblem, start: Vec<f64>) -> Optimum {
+    let tolerant = problem.with_cauchy(TOLERANT * problem.weights.cauchy);
+    let nearer = solve_within(&tolerant, start, TOLERANT_STEPS);
+    solve(problem, nearer.x)
 }
 
 /// Fits a stride from a neighbouring solution: another stride time, or points left out.

@@ -3,9 +3,8 @@
 use muybridge_capture::Keypoint;
 use muybridge_core::{BONE_COUNT, Skeleton};
 use muybridge_fitting::layout::{BENDS, PANEL_DOF};
-use muybridge_fitting::levenberg::solve;
 use muybridge_fitting::observation::attachment;
-use muybridge_fitting::stride_fit::{StrideFit, StrideTime, fit_stride, rms};
+use muybridge_fitting::stride_fit::{StrideFit, StrideTime, fit_stride, rms, solve_from_afar};
 use muybridge_fitting::synthetic::{Placing, SyntheticStride};
 use muybridge_fitting::weights::Weights;
 
@@ -123,18 +122,18 @@ fn perturbed(start: &[f64], seed: u64) -> Vec<f64> {
     start
 }
 
-/// Outliers without contact labels are left out: the Cauchy loss then has a second minimum in two strides of the first
-/// forty (seeds 3 and 23), up to 1 % apart in cost.
+/// With outliers and without contact labels the Cauchy loss has a second minimum in seeds 3 and 23, up to 1 % higher; the
+/// tolerant first steps pass it by.
 #[test]
 fn every_start_ends_at_one_optimum() {
     let (mut worst, mut most_steps) = (0.0f64, 0);
-    for (outlier_share, labelled) in [(0.0, true), (0.0, false), (0.05, true)] {
-        for seed in SEEDS {
+    for (outlier_share, labelled) in [(0.0, true), (0.0, false), (0.05, true), (0.05, false)] {
+        for seed in 0..24 {
             let stride = SyntheticStride::new(seed, PANELS);
             let cold = fit(&stride, &Placing { outlier_share, labelled, ..Placing::default() });
             let start = cold.problem.rest_start(&cold.observation);
             for k in 0..3 {
-                let warm = solve(&cold.problem, perturbed(&start, 97 * seed + k));
+                let warm = solve_from_afar(&cold.problem, perturbed(&start, 97 * seed + k));
                 let apart = (warm.cost / cold.optimum.cost - 1.0).abs();
                 assert!(warm.converged);
                 worst = worst.max(apart);
