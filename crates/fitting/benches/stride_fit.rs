@@ -203,6 +203,10 @@ impl LeastSquares for Watched<'_> {
         self.problem.linearize(x, curvature)
     }
 
+    fn relinearize(&self, x: &[f64], curvature: Curvature, at: &mut Linearization) {
+        self.problem.relinearize(x, curvature, at);
+    }
+
     fn bounds(&self) -> &[[f64; 2]] {
         self.bounds
     }

@@ -11,7 +11,7 @@ use argmin::core::{
     Error, Executor, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus,
 };
 
-use crate::normal_matrix::NormalMatrix;
+use crate::normal_matrix::{Factor, NormalMatrix};
 
 /// A least-squares problem whose normal matrix has the band-and-border form.
 pub trait LeastSquares {
@@ -19,6 +19,10 @@ pub trait LeastSquares {
     fn cost(&self, x: &[f64]) -> f64;
     /// Cost, gradient and second derivatives, exact or without the residuals' own curvature.
     fn linearize(&self, x: &[f64], curvature: Curvature) -> Linearization;
+    /// The same in the memory of an older linearization of the problem.
+    fn relinearize(&self, x: &[f64], curvature: Curvature, at: &mut Linearization) {
+        *at = self.linearize(x, curvature);
+    }
     /// Least and greatest value of each unknown.
     fn bounds(&self) -> &[[f64; 2]];
 }
@@ -61,6 +65,8 @@ pub const MAX_STEPS: u64 = 300;
 /// The solver's state between steps.
 struct Damped {
     at: Linearization,
+    /// The latest factor, kept for its memory.
+    factor: Factor,
     /// Diagonal of the first normal matrix, which the damping is relative to.
     scale: Vec<f64>,
     damping: f64,
@@ -92,12 +98,12 @@ impl BoundedLevenbergMarquardt {
             damped.at.gradient.iter().zip(&pinned).map(|(g, pin)| if *pin { 0.0 } else { -g }).collect();
         while damped.damping < GREATEST_DAMPING {
             let added: Vec<f64> = damped.scale.iter().map(|d| damped.damping * d).collect();
-            let Some(factor) = damped.at.normal.factor(&added, &pinned) else {
+            if damped.at.normal.factor_into(&added, &pinned, &mut damped.factor).is_none() {
                 damped.damping = damped.damping.max(INDEFINITE_DAMPING);
                 damped.refuse();
                 continue;
-            };
-            let step = factor.solve(&right);
+            }
+            let step = damped.factor.solve(&right);
             let next: Vec<f64> = x
                 .iter()
                 .zip(&step)
@@ -121,7 +127,11 @@ impl BoundedLevenbergMarquardt {
             damped.converged = decrease <= tiny;
             let near = decrease < FULL_CURVATURE_BELOW * cost;
             let curvature = if near { Curvature::Full } else { Curvature::GaussNewton };
-            damped.at = problem.problem("linearize_count", |p| Ok(p.linearize(&next, curvature)))?;
+            let at = &mut damped.at;
+            problem.problem("linearize_count", |p| {
+                p.relinearize(&next, curvature, at);
+                Ok(())
+            })?;
             return Ok((next, cost));
         }
         damped.converged = true;
@@ -167,7 +177,9 @@ impl<P: LeastSquares> Solver<P, Iterate> for BoundedLevenbergMarquardt {
         })?;
         let cost = at.cost;
         let scale = at.normal.diagonal().iter().map(|d| d.max(f64::MIN_POSITIVE)).collect();
-        self.state = Some(Damped { at, scale, damping: INITIAL_DAMPING, growth: 2.0, converged: false });
+        let factor = Factor::of_size(&at.normal);
+        self.state =
+            Some(Damped { at, factor, scale, damping: INITIAL_DAMPING, growth: 2.0, converged: false });
         Ok((state.param(x).cost(cost), None))
     }
 

@@ -22,13 +22,25 @@ const ROWS: usize = BAND + BORDER;
 const BLOCK: usize = ROWS * PANEL_DOF;
 
 /// Symmetric matrix of the band-and-border form; only the lower triangle is kept.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct NormalMatrix {
     /// Columns of blocks.
     blocks: usize,
     /// The columns of blocks, each column-major, then the corner: in one piece, because the solver copies whole
-    /// matrices at each step and the allocator hands one large piece out again without asking the system.
+    /// matrices at each step.
     data: Vec<f64>,
+}
+
+impl Clone for NormalMatrix {
+    fn clone(&self) -> Self {
+        Self { blocks: self.blocks, data: self.data.clone() }
+    }
+
+    /// Keeps the memory: asking the system for a megabyte at each step costs a fifth of the step.
+    fn clone_from(&mut self, other: &Self) {
+        self.blocks = other.blocks;
+        self.data.clone_from(&other.data);
+    }
 }
 
 impl NormalMatrix {
@@ -135,7 +147,15 @@ impl NormalMatrix {
     /// Cholesky factor of the matrix with `damping` added to its diagonal and the pinned unknowns taken out; none
     /// when it is not positive definite.
     pub fn factor(&self, damping: &[f64], pinned: &[bool]) -> Option<Factor> {
-        let mut work = self.clone();
+        let mut factor = Factor::of_size(self);
+        self.factor_into(damping, pinned, &mut factor)?;
+        Some(factor)
+    }
+
+    /// The same in the memory of an older factor of the same size, whose content is lost even when there is no new one.
+    pub(crate) fn factor_into(&self, damping: &[f64], pinned: &[bool], factor: &mut Factor) -> Option<()> {
+        let work = &mut factor.lower;
+        work.clone_from(self);
         for (i, value) in damping.iter().enumerate() {
             work.add(i, i, *value);
         }
@@ -163,8 +183,7 @@ impl NormalMatrix {
             let right = transposed.columns(2 * PANEL_DOF, BORDER);
             DMatrixViewMut::from_slice(corner, BORDER, BORDER).gemm(-1.0, &border, &right, 1.0);
         }
-        eliminate(corner, BORDER)?;
-        Some(Factor { lower: work })
+        eliminate(corner, BORDER)
     }
 }
 
@@ -217,6 +236,11 @@ pub struct Factor {
 }
 
 impl Factor {
+    /// Room for the factor of a matrix.
+    pub(crate) fn of_size(matrix: &NormalMatrix) -> Self {
+        Self { lower: matrix.clone() }
+    }
+
     /// Solves for one right-hand side.
     pub fn solve(&self, right: &[f64]) -> Vec<f64> {
         let border = self.lower.border();

@@ -455,15 +455,20 @@ impl LeastSquares for &StrideProblem {
     }
 
     fn linearize(&self, x: &[f64], curvature: Curvature) -> Linearization {
-        let mut at = Linearization {
-            cost: 0.0,
-            gradient: vec![0.0; self.layout.dimension()],
-            normal: self.linear_normal.clone(),
-        };
+        let gradient = vec![0.0; self.layout.dimension()];
+        let mut at = Linearization { cost: 0.0, gradient, normal: self.linear_normal.clone() };
+        self.relinearize(x, curvature, &mut at);
+        at
+    }
+
+    fn relinearize(&self, x: &[f64], curvature: Curvature, at: &mut Linearization) {
+        at.cost = 0.0;
+        at.gradient.fill(0.0);
+        at.normal.clone_from(&self.linear_normal);
         let kinematics = self.kinematics(x);
         let mut places = Vec::with_capacity(64);
         for term in self.point_terms(&kinematics) {
-            self.add_point(&mut at, &kinematics[term.slot], &term, curvature, &mut places);
+            self.add_point(at, &kinematics[term.slot], &term, curvature, &mut places);
         }
         for term in self.slip_terms(&kinematics) {
             at.cost += 0.5 * term.value * term.value;
@@ -486,7 +491,6 @@ impl LeastSquares for &StrideProblem {
                 at.gradient[*i] += residual * slope;
             }
         }
-        at
     }
 
     fn bounds(&self) -> &[[f64; 2]] {
