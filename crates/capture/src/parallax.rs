@@ -5,17 +5,13 @@
 //! same stance give `r = (e_i - e_j) / (X_j - X_i)`; all pairs together by robust least squares, because a toe slips
 //! where it pushes off.
 
-use muybridge_core::Pair;
+use muybridge_core::{Limb, Pair, Skeleton};
 
 use crate::annotation::{KeypointState, PanelAnnotation, StanceLabel};
 use crate::calibration::{Context, Estimate};
 use crate::keypoint::{Keypoint, NearOff};
 use crate::line::GroundLine;
 use crate::manifest::{KnownLength, Position};
-
-/// Half the distance between near and off hooves' planes is small against the camera's distance; the off hooves'
-/// smaller scale is corrected with this width between them, m (twice the reference horse's hoof offset).
-const HOOF_TRACK_WIDTH_M: f64 = 0.24;
 
 /// Rounds of reweighting; the weights settle to rounding in fewer than twenty.
 const ROUNDS: usize = 40;
@@ -110,7 +106,7 @@ fn stance_toe(
     let distance_m = context.manifest.calibration.camera.distance_m.value;
     let shrink = match side {
         NearOff::Near => 1.0,
-        NearOff::Off => distance_m / (distance_m + HOOF_TRACK_WIDTH_M),
+        NearOff::Off => distance_m / (distance_m + hoof_track_width_m()),
     };
     let ahead_m = facing * (along_px - axis_px) / (scale.px_per_m * shrink);
     let sd_px = match panel.keypoints.get(toe)?.state {
@@ -118,4 +114,12 @@ fn stance_toe(
         KeypointState::Occluded | KeypointState::Absent => context.annotation.occluded_sd_px,
     };
     Some(StanceToe { panel: panel.panel, camera_x_m, ahead_m, sd_m: sd_px / scale.px_per_m })
+}
+
+/// Distance between the planes of near and off hooves, m: the reference horse's. It is small against the camera's
+/// distance, so that the animal's own width does not matter.
+fn hoof_track_width_m() -> f64 {
+    let horse = Skeleton::reference();
+    let lateral_m = |limb: Limb| f64::from(horse.bones[limb.hoof_bone()].lateral_m);
+    lateral_m(Limb::RF) - lateral_m(Limb::LF)
 }

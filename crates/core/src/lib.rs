@@ -32,3 +32,8 @@ pub use skeleton::{
     BONE_COUNT, Bone, FetlockCoupling, ReciprocalCoupling, SKELETON_SCHEMA, Skeleton, SwingFetlock, bone,
 };
 pub use stride::{CHANNEL_COUNT, CURVE_SAMPLES, Contact, Curves, Stride};
+
+/// Runs the README's example as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

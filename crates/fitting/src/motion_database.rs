@@ -9,7 +9,7 @@ use crate::chain::Attachment;
 use crate::expansion::expand;
 use crate::law::{ContactPoint, LawFit, fit_law, shift_law};
 use crate::layout::{BENDS, PITCH, ROOT_X, ROOT_Y, SLIDES};
-use crate::pipeline::PlateFit;
+use crate::pipeline::{LEG_SHARE, PlateFit};
 use crate::published;
 use crate::stride_curves::StrideCurves;
 
@@ -102,8 +102,7 @@ fn parent_law(
             (PowerLaw { a: 0.61, b: -0.66 }, "galloping horses, hind limb (Witte et al. 2006)".to_string())
         }
         _ => {
-            // Leg length from the withers height as in the pipeline's stance sweep.
-            let a = 0.80 * (0.77 * withers_height_m).powf(0.84);
+            let a = 0.80 * (LEG_SHARE * withers_height_m).powf(0.84);
             (
                 PowerLaw { a, b: -0.87 },
                 "one limb's stance across species (Hoyt, Wickler & Cogger 2000)".to_string(),

@@ -16,7 +16,7 @@ use crate::weights::Weights;
 /// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.80665;
 /// Height of hip or shoulder joint over the ground as a share of withers height, for stance sweep and Froude number.
-const LEG_SHARE: f64 = 0.77;
+pub(crate) const LEG_SHARE: f64 = 0.77;
 
 /// A fitted plate.
 #[derive(Clone, Debug)]
