@@ -13,11 +13,11 @@ use muybridge_tests::{Run, program, repository};
 const ARROWS: [(&str, &[&str]); 8] = [
     ("core", &[]),
     ("capture", &["core"]),
-    ("imaging", &["capture"]),
+    ("imaging", &["core", "capture"]),
     ("fitting", &["core", "capture"]),
     ("footprints", &["core"]),
     ("export", &["core"]),
-    ("cli", &["core", "capture", "fitting"]),
+    ("cli", &["core", "capture", "imaging", "fitting"]),
     ("annotator", &["core", "capture", "imaging", "fitting", "footprints"]),
 ];
 /// The crate that may use all others.

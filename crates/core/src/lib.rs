@@ -10,7 +10,7 @@
 //! Phase is cyclic in `[0, 1)`; intervals of phase may run through the wrap.
 //! Names carry spaces and units (`point_in_world`, `stride_time_s`); transforms are named `a_from_b`.
 //!
-//! This crate opens no file, reads no clock, starts no thread and uses no randomness: equal inputs give equal bytes.
+//! This crate opens no file, reads no clock, starts no thread and draws chance only from a seed it is given ([`Random`]): equal inputs give equal bytes.
 //! It depends on glam and serde, and on `serde_json` only to parse the two data files compiled into it.
 
 mod database;
@@ -19,6 +19,7 @@ mod law;
 mod limb;
 mod pose;
 mod provenance;
+mod random;
 mod skeleton;
 mod stride;
 
@@ -28,6 +29,7 @@ pub use law::{ContactLaw, Interval, LawKind, MPS_PER_MPH, PowerLaw};
 pub use limb::{Limb, Pair, Side};
 pub use pose::{Joints, Pose};
 pub use provenance::{Provenance, SpeedSource};
+pub use random::Random;
 pub use skeleton::{
     BONE_COUNT, Bone, FetlockCoupling, ReciprocalCoupling, SKELETON_SCHEMA, Skeleton, SwingFetlock, bone,
 };

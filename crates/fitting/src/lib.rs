@@ -17,7 +17,6 @@ pub mod periodic;
 pub mod pipeline;
 pub mod problem;
 pub mod published;
-mod random;
 pub mod report;
 pub mod stride_curves;
 pub mod stride_fit;

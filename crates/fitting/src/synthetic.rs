@@ -14,7 +14,7 @@ use muybridge_core::{Limb, Skeleton};
 use crate::chain::{Chain, Kinematics};
 use crate::layout::{LOG_DOCK, PANEL_DOF, SHARED, log_length};
 use crate::observation::{PanelObservation, PointObservation, StrideObservation, attachment, depth_m};
-use crate::random::Random;
+use muybridge_core::Random;
 use crate::weights::Weights;
 use motion::{CANTER, Motion, TROT};
 

@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, SMatrix, Vector2};
 
 use crate::chain::{Attachment, Chain, Unknown, Vec2};
 use crate::layout::{BENDS, PANEL_DOF, PITCH, ROOT_X, ROOT_Y, SHARED, SLIDES};
-use crate::random::Random;
+use muybridge_core::Random;
 
 /// The croup stands this much higher than where the freely swinging hind legs would set it, m; they stretch by it. More
 /// would straighten a hock beyond its limit, less would fold an elbow beyond its own.

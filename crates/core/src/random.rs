@@ -1,4 +1,4 @@
-//! A small random generator whose sequence never changes, for synthetic strides.
+//! A small random generator whose sequence never changes, for everything that is drawn or chosen by chance.
 //!
 //! ## References
 //! Steele, Lea & Flood, *Fast splittable pseudorandom number generators* (2014): `SplitMix64`.
@@ -6,12 +6,14 @@
 use std::f64::consts::TAU;
 
 /// `SplitMix64` with uniform and normal numbers.
-pub(crate) struct Random {
+#[derive(Clone, Debug)]
+pub struct Random {
     state: u64,
 }
 
 impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
+    /// Starts the sequence of a seed.
+    pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
@@ -24,23 +26,23 @@ impl Random {
     }
 
     /// Uniform in `[0, 1)`.
-    pub(crate) fn uniform(&mut self) -> f64 {
+    pub fn uniform(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// Uniform between two values.
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
     /// Normal with mean 0 and variance 1 (Box and Muller).
-    pub(crate) fn normal(&mut self) -> f64 {
+    pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
         radius * (TAU * self.uniform()).cos()
     }
 
     /// Marks `count` of `total` things, each set equally likely (selection sampling).
-    pub(crate) fn choose(&mut self, count: usize, total: usize) -> Vec<bool> {
+    pub fn choose(&mut self, count: usize, total: usize) -> Vec<bool> {
         let mut wanted = count.min(total);
         (0..total)
             .map(|i| {

@@ -1,0 +1,1 @@
+//! Plates from their IIIF Image API services.

@@ -1,0 +1,1 @@
+//! Drawing plates whose truth is known.

@@ -1,0 +1,1 @@
+//! Finding the panels of a plate.

@@ -1,0 +1,1 @@
+//! Points from one panel to the next.
