@@ -82,6 +82,8 @@ impl Workspace {
     pub fn command(&self, name: &str) -> Command {
         let mut command = Command::new(program(name));
         command.current_dir(self.folder.path()).env_remove("RAYON_NUM_THREADS");
+        // Away from plates that the person who runs the tests has fetched.
+        command.env("MUYBRIDGE_CACHE", self.folder.path().join("cache"));
         command
     }
 

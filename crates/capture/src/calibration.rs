@@ -5,7 +5,9 @@ use muybridge_core::SpeedSource;
 use crate::annotation::{Annotation, PanelAnnotation, PanelUse};
 use crate::keypoint::{BodyPoint, Keypoint};
 use crate::line::GroundLine;
-use crate::manifest::{KnownLength, Manifest, Parallax, Plane, Position, ScaleSource};
+use crate::manifest::{
+    Calibration, Facing, KnownLength, Manifest, Parallax, Plane, Position, ScaleSource,
+};
 use crate::parallax::scale_ratio_from_stance;
 use crate::timing::panel_times;
 
@@ -124,6 +126,12 @@ pub struct PlateCalibration {
 /// Why a plate cannot be calibrated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CalibrationError {
+    /// Nobody has said yet.
+    #[error("{field}: not known yet; say it in the manifest")]
+    Missing {
+        /// The manifest's field.
+        field: &'static str,
+    },
     /// No source for the scale.
     #[error(
         "panel {panel}: marks: fewer than two marks, so the known length gives no scale; mark two or drive the scale by the withers height"
@@ -165,6 +173,8 @@ pub(crate) struct MarkScale {
 /// Everything the steps share.
 pub(crate) struct Context<'a> {
     pub(crate) manifest: &'a Manifest,
+    pub(crate) calibration: &'a Calibration,
+    pub(crate) facing: Facing,
     pub(crate) annotation: &'a Annotation,
 }
 
@@ -212,7 +222,7 @@ impl<'a> Context<'a> {
             .find(|p| p.panel == panel.panel)
             .map_or([0.0, 0.0], crate::manifest::Panel::centre_px);
         let centre = ground.along_and_above(centre_px)[0];
-        match &self.manifest.calibration.position {
+        match &self.calibration.position {
             Position::FixedCamera => Ok((centre, AxisOrigin::At(0.0))),
             Position::FixedMark { mark } => {
                 let at =
@@ -225,7 +235,7 @@ impl<'a> Context<'a> {
                 let Some((scale, spacing)) = scale.zip(self.known_length()) else {
                     return Ok((centre, AxisOrigin::At(camera_x_m)));
                 };
-                let forward_in_marks = scale.sign * self.manifest.facing.sign();
+                let forward_in_marks = scale.sign * self.facing.sign();
                 let mark_m = first_axis_mark * spacing.mark_spacing_m.value + forward_in_marks * camera_x_m;
                 Ok((scale.zero_along_px + scale.sign * scale.px_per_m * mark_m, AxisOrigin::At(camera_x_m)))
             }
@@ -233,7 +243,7 @@ impl<'a> Context<'a> {
     }
 
     fn known_length(&self) -> Option<&'a KnownLength> {
-        self.manifest.calibration.scale.known_length.as_ref()
+        self.calibration.scale.known_length.as_ref()
     }
 }
 
@@ -250,7 +260,10 @@ enum AxisOrigin {
 /// # Errors
 /// When the chosen source of scale or position lacks the marks it needs, or the results are no possible camera.
 pub fn calibrate(manifest: &Manifest, annotation: &Annotation) -> Result<PlateCalibration, CalibrationError> {
-    let context = Context { manifest, annotation };
+    let missing = |field| CalibrationError::Missing { field };
+    let calibration = manifest.calibration.as_ref().ok_or(missing("calibration"))?;
+    let facing = manifest.facing.ok_or(missing("facing"))?;
+    let context = Context { manifest, calibration, facing, annotation };
     let scales = Scales::new(&context)?;
     let mut disagreements = scales.disagreements.clone();
     let mut stride = context.cameras(&context.stride_panels(), &scales)?;
@@ -300,7 +313,7 @@ struct Scales {
 
 impl Scales {
     fn new(context: &Context<'_>) -> Result<Self, CalibrationError> {
-        let scale = &context.manifest.calibration.scale;
+        let scale = &context.calibration.scale;
         let parallax = match &scale.known_length {
             Some(length) => parallax(context, length)?,
             None => None,
@@ -421,12 +434,12 @@ impl Context<'_> {
             .or(marks.map(|m| m.px_per_m * ratio))
             .ok_or(CalibrationError::TooFewMarks { panel: panel.panel })?;
         let (axis_px, origin) = self.axis(panel, index, marks)?;
-        let sign = self.manifest.facing.sign();
+        let sign = self.facing.sign();
         let camera_x_m = match origin {
             AxisOrigin::At(x_m) => x_m,
             AxisOrigin::PxFromAxis(px) => -sign * px / px_per_m,
         };
-        let camera = &self.manifest.calibration.camera;
+        let camera = &self.calibration.camera;
         let possible =
             px_per_m.is_finite() && px_per_m > 0.0 && camera_x_m.is_finite() && axis_px.is_finite();
         if !possible {

@@ -9,6 +9,7 @@ mod annotation;
 mod calibration;
 mod catalogue;
 mod files;
+mod images;
 mod keypoint;
 mod line;
 mod manifest;
@@ -25,6 +26,7 @@ pub use catalogue::{CATALOGUE_SCHEMA, Catalogue, CataloguePlate};
 pub use files::{
     FileError, Hash, hash_file, read_json, read_text, to_stable_json, write_atomically, write_json,
 };
+pub use images::{CACHE_VARIABLE, cache_folder, locate_image};
 pub use keypoint::{BodyPoint, KEYPOINT_COUNT, Keypoint, LimbJoint, NearOff};
 pub use manifest::{
     Calibration, Camera, Facing, Known, KnownLength, MANIFEST_SCHEMA, Manifest, Panel, Parallax, Plane,

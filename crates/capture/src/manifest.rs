@@ -76,14 +76,14 @@ pub struct Manifest {
     pub licence: String,
     /// Statements printed on the plate, word for word.
     pub printed: Vec<String>,
-    /// Which way the animal faces.
-    pub facing: Facing,
+    /// Which way the animal faces; none until somebody has looked.
+    pub facing: Option<Facing>,
     /// The image files.
     pub images: Vec<PlateImage>,
     /// The panels in order of time.
     pub panels: Vec<Panel>,
-    /// How scale, position and time are known.
-    pub calibration: Calibration,
+    /// How scale, position and time are known; none until somebody has said.
+    pub calibration: Option<Calibration>,
 }
 
 /// One image file, not committed with the project; the hash says which one was used.

@@ -34,7 +34,7 @@ struct StancePair {
 
 /// Scale on the track over scale on the wall; none when no hoof is labelled stance and seen in two neighbouring panels.
 pub(crate) fn scale_ratio_from_stance(context: &Context<'_>, length: &KnownLength) -> Option<Estimate> {
-    let Position::CameraSpacing { spacing_m, first_axis_mark } = &context.manifest.calibration.position
+    let Position::CameraSpacing { spacing_m, first_axis_mark } = &context.calibration.position
     else {
         return None;
     };
@@ -100,10 +100,10 @@ fn stance_toe(
     let place = panel.keypoints.place(toe)?;
     let along_px = GroundLine::through(panel.ground_px).along_and_above(place)[0];
     let camera_x_m = spacing_m * (f64::from(panel.panel) - f64::from(context.annotation.stride.first));
-    let facing = context.manifest.facing.sign();
+    let facing = context.facing.sign();
     let axis_mark_m = first_axis_mark * mark_m + scale.sign * facing * camera_x_m;
     let axis_px = scale.zero_along_px + scale.sign * scale.px_per_m * axis_mark_m;
-    let distance_m = context.manifest.calibration.camera.distance_m.value;
+    let distance_m = context.calibration.camera.distance_m.value;
     let shrink = match side {
         NearOff::Near => 1.0,
         NearOff::Off => distance_m / (distance_m + hoof_track_width_m()),

@@ -25,7 +25,7 @@ pub(crate) fn panel_times(
     cameras: &[PanelCamera],
     scale_relative_sd: f64,
 ) -> Result<Timing, CalibrationError> {
-    let time = &context.manifest.calibration.time;
+    let time = &context.calibration.time;
     let panels = context.stride_panels();
     let advance_m = trunk_advance(&panels, cameras);
     // Panels left out of the stride leave their intervals in it.
@@ -76,7 +76,7 @@ pub(crate) fn panel_times(
         });
     }
     if let (TimeSource::Speed, Some(interval), Position::CameraSpacing { spacing_m, .. }) =
-        (time.driven_by, stated_interval, &context.manifest.calibration.position)
+        (time.driven_by, stated_interval, &context.calibration.position)
     {
         let value = spacing_m.value / interval.value;
         let sd = value * relative_sd(Some(spacing_m)).hypot(interval.sd / interval.value);
@@ -95,7 +95,7 @@ pub(crate) fn panel_times(
             other: ("stated speed".into(), other),
         });
     }
-    if let Position::CameraSpacing { spacing_m, .. } = &context.manifest.calibration.position {
+    if let Position::CameraSpacing { spacing_m, .. } = &context.calibration.position {
         let per_panel = distance_m / gaps;
         disagreements.push(Disagreement {
             quantity: "distance per panel, m",
@@ -118,7 +118,7 @@ fn relative_sd(known: Option<&Known>) -> f64 {
 }
 
 fn interval_times(context: &Context<'_>, panels: &[&PanelAnnotation]) -> Vec<f64> {
-    let time = &context.manifest.calibration.time;
+    let time = &context.calibration.time;
     let first = context.annotation.stride.first;
     panels
         .iter()
@@ -134,7 +134,7 @@ fn interval_times(context: &Context<'_>, panels: &[&PanelAnnotation]) -> Vec<f64
 
 fn stride_times(context: &Context<'_>, panels: &[&PanelAnnotation]) -> Result<Vec<f64>, CalibrationError> {
     let stride_s =
-        context.manifest.calibration.time.stride_time_s.as_ref().map_or(f64::NAN, |known| known.value);
+        context.calibration.time.stride_time_s.as_ref().map_or(f64::NAN, |known| known.value);
     let closes = context.annotation.stride.closes_after_panels.ok_or_else(|| {
         CalibrationError::Contradiction(
             "time is driven by the stride time, so stride.closes_after_panels must say how many panels it spans".into(),

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use crate::annotation::{ANNOTATION_SCHEMA, Annotation, KeypointState, PanelAnnotation, PanelUse};
 use crate::files::{FileError, Hash, hash_file, read_json};
+use crate::images::locate_image;
 use crate::manifest::{
-    Calibration, Known, MANIFEST_SCHEMA, Manifest, Parallax, Plane, Position, ScaleSource, TimeSource,
+    Calibration, Facing, Known, MANIFEST_SCHEMA, Manifest, Parallax, Plane, Position, ScaleSource, TimeSource,
 };
 
 /// Fewest points for a panel to count: fewer leave the root and the trunk undetermined.
@@ -77,6 +78,10 @@ pub struct Plate {
     pub manifest_path: PathBuf,
     /// What is known of the plate.
     pub manifest: Manifest,
+    /// Which way the animal faces, as the manifest says.
+    pub facing: Facing,
+    /// How scale, position and time are known, as the manifest says.
+    pub calibration: Calibration,
     /// What was marked on it.
     pub annotation: Annotation,
     /// Whether the images were there.
@@ -105,13 +110,17 @@ impl Plate {
         let mut faults = Faults { path: manifest_path.clone(), found: Vec::new() };
         faults.identifier(&manifest);
         faults.manifest(&manifest);
+        faults.complete(&manifest);
         let images = faults.images(&manifest, &manifest_path);
         faults.path = annotation_path.to_path_buf();
         faults.annotation(&annotation, &manifest);
-        if !faults.found.is_empty() {
+        let known = manifest.facing.zip(manifest.calibration.clone());
+        let Some((facing, calibration)) = known.filter(|_| faults.found.is_empty()) else {
             return Err(PlateError::Faults(faults.found));
-        }
+        };
         Ok(Self {
+            facing,
+            calibration,
             annotation_sha256: hash_file(annotation_path)?,
             annotation_path: annotation_path.to_path_buf(),
             manifest_path,
@@ -123,7 +132,21 @@ impl Plate {
 
     /// Path of an image file on this machine (it may be absent).
     pub fn image_path(&self, index: usize) -> PathBuf {
-        image_path(&self.manifest_path, &self.manifest.images[index].file)
+        locate_image(&self.manifest_path, &self.manifest.images[index].file)
+    }
+}
+
+impl Manifest {
+    /// Reads a manifest and validates what it says; facing and calibration may be missing.
+    ///
+    /// # Errors
+    /// When the file cannot be read or parsed, or with every fault found, in document order.
+    pub fn read(path: &Path) -> Result<Self, PlateError> {
+        let manifest: Self = read_json(path, MANIFEST_SCHEMA)?;
+        let mut faults = Faults { path: path.to_path_buf(), found: Vec::new() };
+        faults.identifier(&manifest);
+        faults.manifest(&manifest);
+        if faults.found.is_empty() { Ok(manifest) } else { Err(PlateError::Faults(faults.found)) }
     }
 }
 
@@ -136,10 +159,6 @@ fn unreadable_manifest(annotation_path: &Path, error: FileError) -> PlateError {
     );
     let path = annotation_path.to_path_buf();
     PlateError::Faults(vec![Fault { path, panel: None, field: "plate".into(), message }])
-}
-
-fn image_path(manifest_path: &Path, file: &str) -> PathBuf {
-    manifest_path.parent().unwrap_or(Path::new(".")).join(file)
 }
 
 struct Faults {
@@ -238,7 +257,16 @@ impl Faults {
                 "corners must run clockwise from the top left",
             );
         }
-        self.calibration(&manifest.calibration);
+        if let Some(calibration) = &manifest.calibration {
+            self.calibration(calibration);
+        }
+    }
+
+    /// What a plate may lack until somebody works with it.
+    fn complete(&mut self, manifest: &Manifest) {
+        let known = manifest.calibration.is_some();
+        self.check(known, None, "calibration", "not known yet; say how scale, position and time are known");
+        self.check(manifest.facing.is_some(), None, "facing", "not known yet; say \"left\" or \"right\"");
     }
 
     fn calibration(&mut self, calibration: &Calibration) {
@@ -319,7 +347,7 @@ impl Faults {
     fn images(&mut self, manifest: &Manifest, manifest_path: &Path) -> ImageCheck {
         let mut check = ImageCheck::Verified;
         for (i, image) in manifest.images.iter().enumerate() {
-            match hash_file(&image_path(manifest_path, &image.file)) {
+            match hash_file(&locate_image(manifest_path, &image.file)) {
                 Err(_) => check = ImageCheck::Absent,
                 Ok(hash) if hash == image.sha256 => {}
                 Ok(hash) => self.add(
@@ -392,7 +420,8 @@ impl Faults {
                 format!("{n} panels are marked for the stride; a fit needs at least {MIN_STRIDE_PANELS}"),
             );
         }
-        if let Some(intervals) = &manifest.calibration.time.intervals_s {
+        let time = manifest.calibration.as_ref().map(|calibration| &calibration.time);
+        if let Some(intervals) = time.and_then(|time| time.intervals_s.as_ref()) {
             let expected = span.last.saturating_sub(span.first) as usize;
             self.check(
                 intervals.len() == expected,

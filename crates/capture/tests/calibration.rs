@@ -120,7 +120,7 @@ impl Truth {
             holder: String::new(),
             licence: String::new(),
             printed: Vec::new(),
-            facing: self.facing,
+            facing: Some(self.facing),
             images: vec![PlateImage {
                 file: "x.png".into(),
                 sha256: "0".repeat(64),
@@ -128,7 +128,7 @@ impl Truth {
                 height_px: 450,
             }],
             panels: (1..=PANELS).map(|panel| Panel { panel, image: 0, quad_px: quad(panel) }).collect(),
-            calibration: Calibration {
+            calibration: Some(Calibration {
                 scale: Scale {
                     driven_by: ScaleSource::KnownLength,
                     known_length: Some(KnownLength {
@@ -149,7 +149,7 @@ impl Truth {
                     stride_time_s: Some(known(0.44, 0.01)),
                 },
                 camera: Camera { distance_m: known(12.0, 2.0), height_m: known(1.2, 0.2) },
-            },
+            }),
         }
     }
 }
@@ -184,16 +184,16 @@ fn distances_a_ratio_marks_on_the_track_and_the_withers_give_the_same_scale() {
     let truth = Truth { facing: Facing::Right };
     let mut manifest = truth.manifest();
     let length = |plane| Some(KnownLength { mark_spacing_m: known(SPACING_M, 0.007), plane });
-    manifest.calibration.scale.known_length =
+    manifest.calibration.as_mut().unwrap().scale.known_length =
         length(Plane::Wall(Parallax::Distances { camera_to_track_m: 10.0, camera_to_wall_m: 12.0 }));
     assert_cameras(&truth, &manifest, 1e-9);
-    manifest.calibration.scale.known_length = length(Plane::Wall(Parallax::Ratio(known(RATIO, 0.02))));
+    manifest.calibration.as_mut().unwrap().scale.known_length = length(Plane::Wall(Parallax::Ratio(known(RATIO, 0.02))));
     assert_cameras(&truth, &manifest, 1e-9);
-    manifest.calibration.scale.driven_by = ScaleSource::WithersHeight;
+    manifest.calibration.as_mut().unwrap().scale.driven_by = ScaleSource::WithersHeight;
     assert_cameras(&truth, &manifest, 1e-9);
     // Without the parallax correction the animal comes out a fifth too big, and the two scales disagree by that.
-    manifest.calibration.scale.driven_by = ScaleSource::KnownLength;
-    manifest.calibration.scale.known_length = length(Plane::Track);
+    manifest.calibration.as_mut().unwrap().scale.driven_by = ScaleSource::KnownLength;
+    manifest.calibration.as_mut().unwrap().scale.known_length = length(Plane::Track);
     let found = calibrate(&manifest, &truth.annotation()).unwrap();
     assert!((found.withers_height_m.unwrap().value / 1.6 - RATIO).abs() < 1e-9);
     let scale = found.disagreements.iter().find(|d| d.quantity.starts_with("scale")).unwrap();
@@ -204,9 +204,9 @@ fn distances_a_ratio_marks_on_the_track_and_the_withers_give_the_same_scale() {
 fn a_fixed_mark_in_the_track_places_every_panel() {
     let truth = Truth { facing: Facing::Left };
     let mut manifest = truth.manifest();
-    manifest.calibration.scale.driven_by = ScaleSource::WithersHeight;
-    manifest.calibration.scale.known_length = None;
-    manifest.calibration.position = Position::FixedMark { mark: 1.0 };
+    manifest.calibration.as_mut().unwrap().scale.driven_by = ScaleSource::WithersHeight;
+    manifest.calibration.as_mut().unwrap().scale.known_length = None;
+    manifest.calibration.as_mut().unwrap().position = Position::FixedMark { mark: 1.0 };
     let mut annotation = truth.annotation();
     for panel in &mut annotation.panels {
         panel.marks = vec![Mark { mark: 1.0, at_px: truth.near_px(panel.panel, 1.5, 0.4) }];
@@ -225,10 +225,10 @@ fn a_fixed_mark_in_the_track_places_every_panel() {
 fn one_fixed_camera_sees_the_animal_cross_the_picture() {
     let truth = Truth { facing: Facing::Right };
     let mut manifest = truth.manifest();
-    manifest.calibration.position = Position::FixedCamera;
-    manifest.calibration.time.driven_by = TimeSource::Interval;
-    manifest.calibration.scale.driven_by = ScaleSource::WithersHeight;
-    manifest.calibration.scale.known_length = None;
+    manifest.calibration.as_mut().unwrap().position = Position::FixedCamera;
+    manifest.calibration.as_mut().unwrap().time.driven_by = TimeSource::Interval;
+    manifest.calibration.as_mut().unwrap().scale.driven_by = ScaleSource::WithersHeight;
+    manifest.calibration.as_mut().unwrap().scale.known_length = None;
     let annotation = truth.annotation();
     let found = calibrate(&manifest, &annotation).unwrap();
     for camera in &found.stride {
@@ -257,18 +257,18 @@ fn times_follow_the_distance_covered_an_interval_or_the_stride_time() {
     let interval = found.disagreements.iter().find(|d| d.quantity.starts_with("mean interval")).unwrap();
     assert!((interval.percent() - 100.0 * (0.05 / (2.85 / 4.0 / 14.0) - 1.0)).abs() < 1e-3, "{interval:?}");
 
-    manifest.calibration.time.driven_by = TimeSource::Interval;
+    manifest.calibration.as_mut().unwrap().time.driven_by = TimeSource::Interval;
     let (by_interval, found) = times(&manifest);
     assert!(by_interval.iter().enumerate().all(|(i, t)| (t - 0.05 * i as f64).abs() < 1e-12));
     assert!((found.speed_m_s.value - 2.85 / 0.2).abs() < 1e-6);
     assert_eq!(found.speed_source, SpeedSource::Measured);
     assert!(found.disagreements.iter().any(|d| d.quantity.starts_with("speed")));
 
-    manifest.calibration.time.intervals_s = Some(vec![0.04, 0.05, 0.06, 0.05]);
+    manifest.calibration.as_mut().unwrap().time.intervals_s = Some(vec![0.04, 0.05, 0.06, 0.05]);
     let (uneven, _) = times(&manifest);
     assert!((uneven[4] - 0.20).abs() < 1e-12 && (uneven[2] - 0.09).abs() < 1e-12);
 
-    manifest.calibration.time.driven_by = TimeSource::StrideTime;
+    manifest.calibration.as_mut().unwrap().time.driven_by = TimeSource::StrideTime;
     let (by_stride, _) = times(&manifest);
     assert!((by_stride[4] - 0.44).abs() < 1e-12 && (by_stride[1] - 0.11).abs() < 1e-12);
 }
@@ -288,6 +288,6 @@ fn what_cannot_be_calibrated_says_why() {
     assert!(error.contains("panel 2") && error.contains("marks"), "{error}");
     // An animal that does not move has no times under a known speed.
     let mut manifest = truth.manifest();
-    manifest.facing = Facing::Left;
+    manifest.facing = Some(Facing::Left);
     assert!(calibrate(&manifest, &truth.annotation()).is_err());
 }

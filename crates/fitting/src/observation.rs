@@ -70,7 +70,7 @@ impl StrideObservation {
     /// Collects a plate's stride panels.
     pub fn new(plate: &Plate, calibration: &PlateCalibration, weights: &Weights) -> Self {
         let annotation = &plate.annotation;
-        let facing = plate.manifest.facing;
+        let facing = plate.facing;
         let panels = calibration
             .stride
             .iter()

@@ -107,7 +107,7 @@ pub fn fit_plate(
 
 /// The stride time that the annotation states: panels after which the movement closes, or the manifest's own.
 fn known_stride_time(plate: &Plate, observation: &StrideObservation) -> Option<StrideTime> {
-    let given = plate.manifest.calibration.time.stride_time_s.as_ref();
+    let given = plate.calibration.time.stride_time_s.as_ref();
     let from_time = given.map(|known| StrideTime { seconds: known.value, sd_s: known.sd });
     let first = f64::from(plate.annotation.stride.first);
     let closes = plate.annotation.stride.closes_after_panels.and_then(|panels| {

@@ -1,22 +1,39 @@
-//! A horse and a stride whose truth is known exactly, for tests and benchmarks.
+//! Horses whose motion is known exactly, for tests, benchmarks and specimen plates.
 //!
-//! Bends are a few harmonics around the rest pose, as a trotting or cantering horse has them. A leg's toe is then
-//! brought to one place on the ground for the length of its stance, so that contact labels are true as well: within a
-//! stance it neither slides nor sinks.
+//! [`SyntheticStride::new`] makes a trot or a canter from a few harmonics around the rest pose;
+//! [`SyntheticStride::of_gait`] makes each gait of the horse, and a leap over a hurdle, with the footfalls and joint
+//! excursions that are known of it. In all of them a toe keeps one place on the ground for the length of its stance, so
+//! that contact labels are true as well: it neither slides nor sinks.
 
+mod carriage;
+mod curve;
+mod gaits;
+mod hurdle;
+mod leap;
+mod leap_numbers;
+mod legs;
 mod motion;
+mod posed;
+mod source;
+mod stepping;
 
 use std::f64::consts::TAU;
 
 use muybridge_capture::{Facing, KEYPOINT_COUNT, Keypoint, KeypointState, PanelCamera, StanceLabel};
-use muybridge_core::{Limb, Skeleton};
+use muybridge_core::{Gait, Lead, Limb, Side, Skeleton};
 
 use crate::chain::{Chain, Kinematics};
 use crate::layout::{LOG_DOCK, PANEL_DOF, SHARED, log_length};
 use crate::observation::{PanelObservation, PointObservation, StrideObservation, attachment, depth_m};
-use muybridge_core::Random;
 use crate::weights::Weights;
+use gaits::GaitNumbers;
+pub use hurdle::Hurdle;
+use leap::Leap;
 use motion::{CANTER, Motion, TROT};
+use muybridge_core::Random;
+pub use posed::{HoofPrint, Posed};
+use source::Source;
+use stepping::Stepping;
 
 /// Scale of every panel, px/m: a plate's panel of 300 px shows three metres of track.
 const PX_PER_M: f64 = 100.0;
@@ -53,38 +70,85 @@ pub struct SyntheticStride {
     pub horse: Skeleton,
     /// Which way it faces.
     pub facing: Facing,
-    /// Speed, m/s.
+    /// Speed, m/s; the mean speed of a leap.
     pub speed_m_s: f64,
-    /// Duration of the stride, s; the panels share it evenly.
+    /// Duration of the stride or the leap, s; the panels share it evenly.
     pub stride_time_s: f64,
     /// Root place, pitch, bends and slides of each panel, in the layout of the fit's unknowns.
     pub poses: Vec<[f64; PANEL_DOF]>,
     /// Whether each leg is down in each panel, in the order of [`Limb::ALL`].
     pub down: Vec<[bool; 4]>,
+    /// The gait.
+    pub gait: Gait,
+    /// Lead of an asymmetrical gait.
+    pub lead: Option<Lead>,
+    /// What is leapt over.
+    pub hurdle: Option<Hurdle>,
     chain: Chain,
+    source: Source,
     seed: u64,
 }
 
 impl SyntheticStride {
-    /// A horse, its gait and its motion from a seed; even seeds trot, odd ones canter.
+    /// A horse, its gait and its motion from a seed; even seeds trot, odd ones canter. Its poses are harmonics of few
+    /// parameters, as the fit's own curves are; see [`Self::of_gait`] for motions that look like a horse's.
     pub fn new(seed: u64, panels: usize) -> Self {
         let mut random = Random::new(seed);
-        let horse = random_horse(&mut random);
-        let chain = Chain::new(&horse);
-        let reference = if seed.is_multiple_of(2) { TROT } else { CANTER };
-        let gait =
-            reference.scaled(f64::from(horse.withers_height_m / Skeleton::reference().withers_height_m));
-        let mut motion = Motion::new(gait, chain.clone(), &mut random);
+        let horse = random_horse(&mut random, 0.08);
+        let trots = seed.is_multiple_of(2);
+        let gait = if trots { TROT } else { CANTER }.scaled(size(&horse));
+        let mut motion = Motion::new(gait, Chain::new(&horse), &mut random);
         motion.stand_on_the_ground();
         let phases: Vec<f64> = (0..panels).map(|k| k as f64 / panels as f64).collect();
         Self {
-            facing: if seed % 4 < 2 { Facing::Right } else { Facing::Left },
+            facing: facing(seed),
+            gait: if trots { Gait::Trot } else { Gait::Canter },
+            lead: (!trots).then_some(Lead { fore: Side::Right, hind: Side::Right }),
             speed_m_s: gait.speed_m_s,
             stride_time_s: gait.stride_time_s,
             poses: phases.iter().map(|phase| motion.pose(*phase)).collect(),
             down: phases.iter().map(|phase| Limb::ALL.map(|limb| gait.down(limb, *phase))).collect(),
+            hurdle: None,
+            chain: Chain::new(&horse),
             horse,
-            chain,
+            source: Source::Harmonic(Box::new(motion)),
+            seed,
+        }
+    }
+
+    /// A horse and its motion at a gait from a seed, with the footfalls, speeds and joint excursions that are known of
+    /// that gait. A stride of the six gaits begins at any phase of it; a leap is a stretch of canter with a hurdle in
+    /// its midst, from the last approach to the landing of the hinds. Seeds choose facing, lead, size and proportions.
+    pub fn of_gait(gait: Gait, seed: u64, panels: usize) -> Self {
+        let mut random = Random::new(seed);
+        let horse = random_horse(&mut random, 0.04);
+        let on_right = random.uniform() < 0.5;
+        let hurry = random.between(0.96, 1.04);
+        let side = if on_right { Side::Right } else { Side::Left };
+        let lead = Some(Lead { fore: side, hind: side });
+        let (source, lead) = match GaitNumbers::of(gait) {
+            Some(numbers) => {
+                let sided = if on_right { numbers } else { numbers.mirrored() };
+                let gone = sided.scaled(size(&horse)).hurried(hurry);
+                let lead = lead.filter(|_| numbers.asymmetrical);
+                (Source::Stepping(Box::new(Stepping::new(&horse, gone, &mut random))), lead)
+            }
+            None => (Source::Leap(Box::new(Leap::new(&horse, side, size(&horse), &mut random))), lead),
+        };
+        let duration_s = source.duration_s();
+        let times_s = (0..panels).map(|k| duration_s * k as f64 / panels as f64);
+        Self {
+            facing: facing(seed),
+            gait,
+            lead,
+            speed_m_s: source.speed_m_s(),
+            stride_time_s: duration_s,
+            poses: times_s.clone().map(|time_s| source.pose(time_s)).collect(),
+            down: times_s.map(|time_s| source.down(time_s)).collect(),
+            hurdle: source.hurdle(),
+            chain: Chain::new(&horse),
+            horse,
+            source,
             seed,
         }
     }
@@ -148,10 +212,19 @@ impl SyntheticStride {
     }
 }
 
-/// The reference horse, 0.9 to 1.1 times as large, each bone up to 8 % longer or shorter than that.
-fn random_horse(random: &mut Random) -> Skeleton {
+/// Withers height against the reference's.
+fn size(horse: &Skeleton) -> f64 {
+    f64::from(horse.withers_height_m / Skeleton::reference().withers_height_m)
+}
+
+fn facing(seed: u64) -> Facing {
+    if seed % 4 < 2 { Facing::Right } else { Facing::Left }
+}
+
+/// The reference horse, 0.9 to 1.1 times as large, each bone longer or shorter than that by up to a share of it.
+fn random_horse(random: &mut Random, share: f64) -> Skeleton {
     let mut horse = Skeleton::reference().scaled(random.between(0.9, 1.1) as f32);
-    let factors: [f64; SHARED] = std::array::from_fn(|_| random.between(0.92, 1.08));
+    let factors: [f64; SHARED] = std::array::from_fn(|_| random.between(1.0 - share, 1.0 + share));
     for (i, bone) in horse.bones.iter_mut().enumerate() {
         bone.length_m *= factors[log_length(i)] as f32;
     }
@@ -160,56 +233,4 @@ fn random_horse(random: &mut Random) -> Skeleton {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::chain::Attachment;
-    use crate::layout::{BENDS, SLIDES};
-    use muybridge_core::BONE_COUNT;
-
-    #[test]
-    fn stance_toes_rest_on_the_ground_and_swing_toes_are_over_it() {
-        for seed in 0..20 {
-            let stride = SyntheticStride::new(seed, 24);
-            let mut prints: [Option<f64>; 4] = [None; 4];
-            for panel in 0..48 {
-                let (turn, panel) = (panel / 24, panel % 24);
-                let k = stride.kinematics(panel);
-                for limb in Limb::ALL {
-                    let [x, y] = k.place(Attachment::Tip(limb.hoof_bone()));
-                    let x = x + turn as f64 * stride.speed_m_s * stride.stride_time_s;
-                    let print = &mut prints[limb.index()];
-                    if !stride.down[panel][limb.index()] {
-                        assert!(y > -0.01, "seed {seed} {limb:?} panel {panel}: {y:.3} m");
-                        *print = None;
-                        continue;
-                    }
-                    let slid = x - *print.get_or_insert(x);
-                    assert!(
-                        y.abs() < 1e-6 && slid.abs() < 1e-6,
-                        "seed {seed} {limb:?} panel {panel}: {y} {slid}"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn bends_and_slides_stay_within_the_limits() {
-        for seed in 0..20 {
-            let stride = SyntheticStride::new(seed, 24);
-            let chain = &stride.chain;
-            for (panel, pose) in stride.poses.iter().enumerate() {
-                for i in 0..BONE_COUNT {
-                    let [low, high] = chain.limits_rad[i];
-                    let (bend, name) = (pose[BENDS + i], &stride.horse.bones[i].name);
-                    assert!(
-                        (low..=high).contains(&bend),
-                        "seed {seed} panel {panel} {name}: {:.0}",
-                        bend.to_degrees()
-                    );
-                }
-                assert!(pose[SLIDES..].iter().all(|slide| slide.abs() < 0.06));
-            }
-        }
-    }
-}
+mod tests;

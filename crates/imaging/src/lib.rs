@@ -7,6 +7,7 @@
 //! Equal inputs give equal results; nothing here reads a clock or uses chance that is not seeded.
 
 pub mod fetch;
+mod frames;
 mod panel_view;
 mod picture;
 pub mod see;
@@ -14,5 +15,6 @@ pub mod specimen;
 pub mod split;
 pub mod track;
 
+pub use frames::frames;
 pub use panel_view::{PanelTransform, PanelView};
 pub use picture::{LoadLimits, PictureError, load_gray, load_rgb};

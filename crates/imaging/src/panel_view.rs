@@ -59,8 +59,7 @@ fn plate_from_unit_square(&[[x0, y0], [x1, y1], [x2, y2], [x3, y3]]: &[Point; 4]
 
 fn inverse(m: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
     let cofactor = |row: usize, column: usize| {
-        let ([r0, r1], [c0, c1]) =
-            ([(row + 1) % 3, (row + 2) % 3], [(column + 1) % 3, (column + 2) % 3]);
+        let ([r0, r1], [c0, c1]) = ([(row + 1) % 3, (row + 2) % 3], [(column + 1) % 3, (column + 2) % 3]);
         m[r0][c0] * m[r1][c1] - m[r0][c1] * m[r1][c0]
     };
     let determinant: f64 = (0..3).map(|column| m[0][column] * cofactor(0, column)).sum();

@@ -1,12 +1,16 @@
 //! Reading picture files of any usual kind, within bounds of memory.
 
+pub(crate) mod jpeg;
+
 use std::io::{BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use image::codecs::gif::GifDecoder;
 use image::error::ImageError;
 use image::metadata::Orientation;
-use image::{AnimationDecoder, DynamicImage, GrayImage, ImageDecoder, ImageFormat, ImageReader, Limits, RgbImage};
+use image::{
+    AnimationDecoder, DynamicImage, GrayImage, ImageDecoder, ImageFormat, ImageReader, Limits, RgbImage,
+};
 
 /// What is read at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +63,12 @@ pub enum PictureError {
         /// Limit, px.
         most: u64,
     },
+    /// A folder without frames.
+    #[error("{}: no picture file in this folder; name a folder of JPEG, PNG, TIFF or GIF frames", path.display())]
+    NoFrames {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A moving picture.
     #[error("{}: an animation; unpack its frames into a folder and give the folder", path.display())]
     Animated {
@@ -91,8 +101,7 @@ fn load(path: &Path, limits: LoadLimits) -> Result<DynamicImage, PictureError> {
         return Err(read_error(std::io::ErrorKind::IsADirectory.into()));
     }
     // By content: a scan's extension is often wrong.
-    let reader =
-        ImageReader::new(BufReader::new(&file)).with_guessed_format().map_err(read_error)?;
+    let reader = ImageReader::new(BufReader::new(&file)).with_guessed_format().map_err(read_error)?;
     let format = reader.format().ok_or_else(|| PictureError::UnknownKind { path: path.to_path_buf() })?;
     let mut decoder = reader.into_decoder().map_err(damaged)?;
     let (width, height) = decoder.dimensions();
@@ -106,6 +115,12 @@ fn load(path: &Path, limits: LoadLimits) -> Result<DynamicImage, PictureError> {
     decoder.set_limits(memory).map_err(damaged)?;
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     let mut picture = DynamicImage::from_decoder(decoder).map_err(damaged)?;
+    if format == ImageFormat::Jpeg {
+        file.seek(SeekFrom::Start(0)).map_err(read_error)?;
+        if !jpeg::has_end(BufReader::new(&file)).map_err(read_error)? {
+            return Err(damaged(std::io::Error::from(std::io::ErrorKind::UnexpectedEof).into()));
+        }
+    }
     if format == ImageFormat::Gif && is_animated(&mut file).map_err(damaged)? {
         return Err(PictureError::Animated { path: path.to_path_buf() });
     }

@@ -8,7 +8,9 @@ use muybridge_capture::{ANNOTATION_SCHEMA, Annotation, Plate, hash_file, read_js
 use muybridge_core::Skeleton;
 use muybridge_fitting::pipeline::fit_plate;
 use muybridge_fitting::weights::Weights;
+use muybridge_imaging::{LoadLimits, load_rgb};
 
+use super::canvas::write_picture;
 use super::contact_sheet::ContactSheet;
 use super::repeatability::Repeatability;
 
@@ -144,9 +146,7 @@ fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
         Some(out) => out.clone(),
         None => PathBuf::from("target").join(format!("{}.png", plate.manifest.id)),
     };
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    picture.write_to(&mut bytes, image::ImageFormat::Png).context("cannot encode the picture")?;
-    muybridge_capture::write_atomically(&out, bytes.get_ref())?;
+    write_picture(&out, &picture)?;
     println!("{}", out.display());
     Ok(())
 }
@@ -170,9 +170,7 @@ fn images(plate: &Plate, instead: Option<&Path>) -> anyhow::Result<Vec<Option<im
                 path.display()
             );
         }
-        let picture =
-            image::open(&path).with_context(|| format!("{}: cannot be read as a picture", path.display()))?;
-        images.push(Some(picture.to_rgb8()));
+        images.push(Some(load_rgb(&path, LoadLimits::default())?));
     }
     Ok(images)
 }

@@ -1,12 +1,22 @@
 //! Drawing on a picture: smooth thick lines, marks and text.
 
+use std::path::Path;
+
 use ab_glyph::{FontRef, PxScale};
+use anyhow::Context;
 use image::{Rgb, RgbImage};
 use imageproc::drawing::{
     draw_antialiased_polygon_mut, draw_filled_circle_mut, draw_hollow_circle_mut, draw_text_mut,
 };
 use imageproc::pixelops::interpolate;
 use imageproc::point::Point;
+
+/// Writes a picture as PNG.
+pub(super) fn write_picture(path: &Path, picture: &RgbImage) -> anyhow::Result<()> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, image::ImageFormat::Png).context("cannot encode the picture")?;
+    Ok(muybridge_capture::write_atomically(path, bytes.get_ref())?)
+}
 
 /// Line thickness of bones, px of the drawn picture.
 pub(super) const BONE_PX: f64 = 3.0;

@@ -143,7 +143,7 @@ impl ContactSheet<'_> {
             .position(|i| fit.observation.panels[*i].camera.panel == annotation.panel);
         let Some(slot) = slot else { return };
         let kinematics = &fit.kinematics()[slot];
-        let facing = self.plate.manifest.facing;
+        let facing = self.plate.facing;
         for colour in [OFF, BODY, NEAR] {
             for bone in (0..BONE_COUNT).filter(|bone| bone_colour(*bone, facing) == colour) {
                 let ends = kinematics.bone(bone).map(|end| {

@@ -1,32 +1,46 @@
-//! `muybridge plates`: which plates there are.
+//! `muybridge plates`: which plates there are, getting them, splitting them, seeing in them, and drawing specimens.
 
-use std::path::PathBuf;
+mod acquire;
+mod list;
+mod show;
+mod source;
+mod specimen;
+mod split;
 
-use anyhow::bail;
-use clap::{Args, Subcommand};
-use comfy_table::{Table, presets::NOTHING};
-use muybridge_capture::{Catalogue, CataloguePlate};
+use clap::Subcommand;
 use muybridge_core::Gait;
+
+/// The catalogue of the repository.
+const CATALOGUE: &str = "plates/catalogue.toml";
 
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub(super) enum PlatesCommand {
     /// List the catalogue. Example: `muybridge plates list --gait canter`
-    List(ListArguments),
+    List(list::ListArguments),
+    /// Download plates of the catalogue and write their manifests. Example: `muybridge plates fetch 616`
+    Fetch(acquire::FetchArguments),
+    /// Add a scan, or a folder of frames, of one's own. Example: `muybridge plates add scan.tif --gait trot`
+    Add(acquire::AddArguments),
+    /// Find the panels of a plate, print and draw them. Example: `muybridge plates split scan.tif`
+    Split(split::SplitArguments),
+    /// Draw what is seen in the panels over them. Example: `muybridge plates show sallie-gardner-1878`
+    Show(show::ShowArguments),
+    /// Draw a plate whose truth is known. Example: `muybridge plates specimen canter`
+    Specimen(specimen::SpecimenArguments),
 }
 
-/// Arguments of `list`.
-#[derive(Debug, Args)]
-pub(super) struct ListArguments {
-    /// Only plates titled with this gait: walk, amble, trot, rack, canter, gallop or leap.
-    #[arg(long, value_parser = gait)]
-    gait: Option<Gait>,
-    /// Only plates of this animal (any case, a part of the name will do).
-    #[arg(long, value_name = "NAME")]
-    animal: Option<String>,
-    /// The catalogue file.
-    #[arg(long, value_name = "FILE", default_value = "plates/catalogue.toml")]
-    catalogue: PathBuf,
+impl PlatesCommand {
+    pub(super) fn run(&self) -> anyhow::Result<()> {
+        match self {
+            Self::List(arguments) => list::list(arguments),
+            Self::Fetch(arguments) => acquire::run_fetch(arguments),
+            Self::Add(arguments) => acquire::run_add(arguments),
+            Self::Split(arguments) => split::run_split(arguments),
+            Self::Show(arguments) => show::run_show(arguments),
+            Self::Specimen(arguments) => specimen::run_specimen(arguments),
+        }
+    }
 }
 
 fn gait(name: &str) -> Result<Gait, String> {
@@ -34,31 +48,4 @@ fn gait(name: &str) -> Result<Gait, String> {
         let names: Vec<&str> = Gait::ALL.into_iter().map(Gait::name).collect();
         format!("there is {}", names.join(", "))
     })
-}
-
-impl PlatesCommand {
-    pub(super) fn run(&self) -> anyhow::Result<()> {
-        match self {
-            Self::List(arguments) => list(arguments),
-        }
-    }
-}
-
-fn list(arguments: &ListArguments) -> anyhow::Result<()> {
-    let catalogue = Catalogue::read(&arguments.catalogue)?;
-    let animal = arguments.animal.as_ref().map(|name| name.to_lowercase());
-    let wanted = |plate: &&CataloguePlate| {
-        arguments.gait.is_none_or(|gait| plate.gait == gait)
-            && animal.as_ref().is_none_or(|name| plate.animal.to_lowercase().contains(name))
-    };
-    let mut table = Table::new();
-    table.load_style(NOTHING).set_header(["plate", "gait", "animal", "action"]);
-    for plate in catalogue.plates.iter().filter(wanted) {
-        table.add_row([&plate.number.to_string(), plate.gait.name(), &plate.animal, &plate.action]);
-    }
-    if table.is_empty() {
-        bail!("no plate of the catalogue is like that; `muybridge plates list` shows all");
-    }
-    println!("{}", table.trim_fmt());
-    Ok(())
 }

@@ -90,7 +90,7 @@ impl Diagram<'_> {
     fn lane(&self, pen: &Pen<'_>, lane: usize, limb: Limb) -> Drawn {
         let y = TOP_PX + (lane as f64 + 0.5) * LANE_PX;
         let contact = &self.fit.analysis.contacts[limb.index()];
-        let near_off = self.fit.plate.manifest.facing.near_off(limb.side());
+        let near_off = self.fit.plate.facing.near_off(limb.side());
         let ink = super::ink_of_side(near_off);
         pen.text([LEFT_PX - 24.0, y], limb.abbreviation(), LABEL_PX + 1.0, Ink::Text, Anchor::End)?;
         pen.label([LEFT_PX - 50.0, y], &format!("{near_off:?}").to_lowercase(), Anchor::End)?;
@@ -153,7 +153,7 @@ impl Diagram<'_> {
             for limb in Limb::ALL {
                 let across = if limb.pair() == Pair::Fore { 7.0 } else { -7.0 };
                 let down = if limb.index().is_multiple_of(2) { -7.0 } else { 7.0 };
-                let ink = super::ink_of_side(self.fit.plate.manifest.facing.near_off(limb.side()));
+                let ink = super::ink_of_side(self.fit.plate.facing.near_off(limb.side()));
                 let at = [x + across, row + down];
                 if support.down[limb.index()] {
                     pen.dot(at, 4.5, ink, 1.0)?;

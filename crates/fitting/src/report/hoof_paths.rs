@@ -132,7 +132,7 @@ fn side_picture(fit: &PlateFit, paths: &[ToePath], side: NearOff) -> String {
         pen.dot(frame.at([0.0, 0.0]), 4.0, Ink::Body, 1.0)?;
         pen.label([frame.x.at(0.0) + 8.0, frame.y.at(0.0)], "root", Anchor::Start)?;
         for pair in [Pair::Fore, Pair::Hind] {
-            let path = &paths[fit.plate.manifest.facing.limb(side, pair).index()];
+            let path = &paths[fit.plate.facing.limb(side, pair).index()];
             path.draw(pen, ink, false, &|sample| frame.at(sample.from_root_m))?;
             pen.mark(frame.at(path.nearest(path.strike).from_root_m), Mark::Triangle, 5.0, ink)?;
             pen.mark(frame.at(path.nearest(path.strike + path.duty).from_root_m), Mark::Square, 4.0, ink)?;
@@ -156,7 +156,7 @@ fn heights_picture(fit: &PlateFit, paths: &[ToePath]) -> String {
         frame.draw(pen, [11, 6], ["% of stride from the left hind's strike", "cm over the ground"])?;
         pen.line(&[frame.at([0.0, 0.0]), frame.at([100.0, 0.0])], Ink::Ground, 1.25)?;
         for path in paths {
-            let ink = super::ink_of_side(fit.plate.manifest.facing.near_off(path.limb.side()));
+            let ink = super::ink_of_side(fit.plate.facing.near_off(path.limb.side()));
             let at = |sample: &Sample| frame.at([100.0 * sample.phase, 100.0 * sample.height_m]);
             path.draw(pen, ink, path.limb.pair() == Pair::Hind, &at)?;
             if let Some(top) = path.samples.iter().max_by(|a, b| a.height_m.total_cmp(&b.height_m)) {

@@ -51,7 +51,7 @@ fn facts(fit: &PlateFit) -> String {
         escape(&manifest.animal),
         escape(&manifest.date),
         manifest.gait,
-        format!("{:?}", manifest.facing).to_lowercase(),
+        format!("{:?}", fit.plate.facing).to_lowercase(),
         escape(&manifest.source),
         escape(&manifest.holder),
         escape(&manifest.licence),
@@ -74,8 +74,8 @@ fn calibration(fit: &PlateFit) -> String {
     format!(
         "<p>The fit is driven by {} for scale and by {} for time. The speed of {} m/s {speed}; the mean \
          interval between panels is {} ms.{parallax}</p>\n{}{}",
-        scale_name(fit.plate.manifest.calibration.scale.driven_by),
-        time_name(fit.plate.manifest.calibration.time.driven_by),
+        scale_name(fit.plate.calibration.scale.driven_by),
+        time_name(fit.plate.calibration.time.driven_by),
         estimate(of.speed_m_s),
         estimate(Estimate { value: 1000.0 * of.interval_s.value, sd: 1000.0 * of.interval_s.sd }),
         known_table(fit),
@@ -104,7 +104,7 @@ fn estimate(estimate: Estimate) -> String {
 
 /// What is known, how well, from where, and whether the fit rests on it.
 fn known_table(fit: &PlateFit) -> String {
-    let calibration = &fit.plate.manifest.calibration;
+    let calibration = &fit.plate.calibration;
     let (scale, time) = (&calibration.scale, &calibration.time);
     let by_length = scale.driven_by == ScaleSource::KnownLength;
     let mut rows = Vec::new();
@@ -179,5 +179,5 @@ fn verdict(found: &[Disagreement]) -> String {
 
 /// The animal's near side in a word.
 pub(super) fn near_side(fit: &PlateFit) -> String {
-    format!("{:?}", fit.plate.manifest.facing.side(NearOff::Near)).to_lowercase()
+    format!("{:?}", fit.plate.facing.side(NearOff::Near)).to_lowercase()
 }

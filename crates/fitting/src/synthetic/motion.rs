@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use muybridge_core::{BONE_COUNT, Limb, Pair, bone};
 use nalgebra::{Matrix2, SMatrix, Vector2};
 
+use super::legs::Stance;
 use crate::chain::{Attachment, Chain, Unknown, Vec2};
 use crate::layout::{BENDS, PANEL_DOF, PITCH, ROOT_X, ROOT_Y, SHARED, SLIDES};
 use muybridge_core::Random;
@@ -24,7 +25,7 @@ const REACH_STEPS: usize = 25;
 const REACH_DAMPING: f64 = 0.01;
 
 /// What tells one gait from another, for a horse of the reference's size.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Gait {
     pub(super) speed_m_s: f64,
     pub(super) stride_time_s: f64,
@@ -116,7 +117,7 @@ const HIND_YIELD: [[f64; 5]; 4] = [
 ];
 
 /// What is particular to one channel of one horse: a lasting offset, a strength, a delay, and two small harmonics.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Habit {
     offset: f64,
     strength: f64,
@@ -144,8 +145,9 @@ impl Habit {
 }
 
 /// A periodic motion of a horse.
+#[derive(Clone, Debug)]
 pub(super) struct Motion {
-    gait: Gait,
+    pub(super) gait: Gait,
     chain: Chain,
     /// One for each bend, then pitch, height, surge and the two slides.
     bends: [Habit; BONE_COUNT],
@@ -219,6 +221,16 @@ impl Motion {
             self.reach(&mut pose, limb, target);
         }
         pose
+    }
+
+    /// The stance of a leg that began last before a time.
+    pub(super) fn last_stance(&self, limb: Limb, time_s: f64) -> Stance {
+        let (gait, stride_s) = (&self.gait, self.gait.stride_time_s);
+        let strike = gait.mid_stance[limb.index()] - 0.5 * gait.duty_factor;
+        let strike_s = (strike + (time_s / stride_s - strike).floor()) * stride_s;
+        let stance_s = gait.duty_factor * stride_s;
+        let print_x_m = self.print_x(limb, (strike_s + 0.5 * stance_s) / stride_s);
+        Stance { strike_s, lift_off_s: strike_s + stance_s, print_x_m }
     }
 
     /// Where a hoof stands in the stance nearest to a phase: in its middle, as far from hip or shoulder as at rest.

@@ -1,0 +1,35 @@
+//! Hill climbing along the axes, for a handful of unknowns and a cheap, rough score.
+
+/// Moves `unknowns` uphill by `steps`, which are halved `halvings` times, and returns the score reached.
+pub(super) fn climb(
+    unknowns: &mut [f64],
+    steps: &[f64],
+    halvings: u32,
+    score: impl Fn(&[f64]) -> f64,
+) -> f64 {
+    /// Rounds at one step length; the score is bounded, so that a longer climb gains little.
+    const ROUNDS: usize = 8;
+    let mut best = score(unknowns);
+    for halving in 0..=halvings {
+        let factor = 0.5f64.powi(halving as i32);
+        for _ in 0..ROUNDS {
+            let before = best;
+            for (axis, step) in steps.iter().enumerate() {
+                for step in [step * factor, -step * factor] {
+                    let old = unknowns[axis];
+                    unknowns[axis] = old + step;
+                    let here = score(unknowns);
+                    if here > best {
+                        best = here;
+                    } else {
+                        unknowns[axis] = old;
+                    }
+                }
+            }
+            if best <= before {
+                break;
+            }
+        }
+    }
+    best
+}
