@@ -28,10 +28,11 @@ fn posed(pose: Posed) -> PosedHorse {
     PosedHorse { time_s, bones, croup, dock, down }
 }
 
-/// The look of the plate kept for a gait: cards of 1878 and plates of 1887 by turns, the fast gaits ridden.
+/// The look of the plate kept for a gait: the card of 1878, the plates of 1887 and a dark wall, the fast gaits ridden.
 pub fn style(gait: Gait, seed: u64, panels: usize) -> SpecimenStyle {
     let base = match gait {
-        Gait::Walk | Gait::Trot | Gait::Canter | Gait::Leap => SpecimenStyle::animal_locomotion(),
+        Gait::Walk => SpecimenStyle::dark_wall(),
+        Gait::Trot | Gait::Canter | Gait::Leap => SpecimenStyle::animal_locomotion(),
         Gait::Amble | Gait::Rack | Gait::Gallop => SpecimenStyle::default(),
     };
     let rider = matches!(gait, Gait::Canter | Gait::Gallop | Gait::Leap);

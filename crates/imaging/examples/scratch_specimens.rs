@@ -28,7 +28,7 @@ fn main() {
         if ok && !certain { doubtful_right += 1; }
         let min = ious.iter().copied().fold(1.0, f64::min);
         all.extend(ious.iter().copied());
-        let least_seen = found.panels.iter().flat_map(|p| p.seen).fold(1.0, f64::min);
+        let least_seen = found.panels.iter().map(|p| p.confidence).fold(1.0, f64::min);
         if !ok || !certain {
             println!("seed {seed} {}x{} {:?} tilt {:.1} fold {} shadow {:?} gutter {:.0?} panel {:.0?} mount {:.0} wall {:.0} page {:.0} grain {:.1}: found {}/{} min {:.3} least seen {:.2} {:.2}s {}", style.rows, style.columns, style.mount, style.tilt_deg, style.fold, style.shadowed_panel, style.gutter_px, style.panel_px, style.tones.mount, style.tones.wall, style.tones.page, style.grain_sd, found.panels.len(), truth.len(), min, least_seen, dt, if ok { "RIGHT" } else if certain { "SILENT" } else { "wrong" });
             for d in &found.doubts { println!("      {d}"); }

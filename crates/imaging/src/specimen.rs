@@ -26,6 +26,7 @@ use image::GrayImage;
 use image::codecs::jpeg::JpegEncoder;
 use muybridge_capture::Facing;
 use muybridge_core::{BONE_COUNT, Gait, Random, bone};
+use serde::{Deserialize, Serialize};
 
 pub use style::{Grid, Mount, SpecimenStyle, Tones};
 pub use swung::swung_legs;
@@ -80,9 +81,10 @@ impl PosedHorse {
 }
 
 /// An obstacle across the track.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Hurdle {
-    /// Place along the motion's track, m.
+    /// Place along the track, m: the motion's in a [`SpecimenMotion`], the plate's in a [`SpecimenTruth`].
     pub x_m: f64,
     /// Height over the track, m.
     pub height_m: f64,
@@ -145,13 +147,13 @@ pub struct Specimen {
 pub fn draw(motion: &SpecimenMotion, style: &SpecimenStyle) -> Specimen {
     let mut random = Random::new(style.seed);
     let layout = Layout::new(motion, style, &mut random);
-    let mut plate = print::mounted(&layout, style, &mut random);
+    let mut plate = print::mounted(&layout, style);
     let mut silhouettes = Vec::with_capacity(layout.panels.len());
     let mut panels = Vec::with_capacity(layout.panels.len());
     for (panel, pose) in layout.panels.iter().zip(&motion.poses) {
         let pose = &pose.moved(-layout.origin_x_m);
         let photograph = Photograph::take(&layout, panel, pose, motion, style, &mut random);
-        photograph.paste(&mut plate, panel);
+        photograph.paste(&mut plate);
         panels.push(truth::panel_truth(panel, pose, motion, style, &photograph));
         silhouettes.push(photograph.silhouette());
     }

@@ -1,148 +1,111 @@
-//! Finding the panels of a plate.
+//! Finding the panels of a plate: where each photograph lies on its mount, in reading order, and what is uncertain about it.
+//!
+//! 1. A small copy is searched for the mount: several ranges of tone are tried ([`mount`]). For each, the copy is turned
+//!    upright ([`turn`]), a fold of the page is counted as mount ([`fold`]), and rows and columns of panels are what lies
+//!    between lines of mount ([`mask`], [`spans`], [`layout`]). Panels of a plate are of one size: that tells a gutter from a
+//!    dark line in a photograph, and a photograph from a caption.
+//! 2. Each edge is then found on the plate itself, to a fraction of a pixel ([`edge`]). One that lies in shadow is placed by the
+//!    other panels' size ([`agree`]).
+//! 3. The range of tone is taken for which most of the outlines are seen ([`reading`]); what speaks against the result is said
+//!    ([`doubt`]).
 
+mod agree;
+mod doubt;
 mod edge;
 mod fold;
 mod layout;
 mod mask;
 mod mount;
 mod overlap;
+mod reading;
+mod small;
 mod spans;
+mod strip;
+mod turn;
 
-use image::{GrayImage, Luma};
+use image::GrayImage;
 
-use edge::RoughEdge;
-use layout::{Cell, Layout};
-use mask::{Mask, Turn};
+pub use doubt::{Doubt, Side};
 pub use overlap::iou;
 
+use layout::Cell;
+use reading::Outline;
+use small::Small;
+
+/// A point: x right, y down.
 type Point = [f64; 2];
 
-/// Longest side of the small copy on which panels are first found, px.
-const SMALL_PX: u32 = 2000;
+/// Least side of a picture that is searched, px: the panels of a smaller one would show nothing.
+const LEAST_PLATE_PX: u32 = 48;
+/// Least difference of grey values that is a picture.
+const LEAST_RANGE: u8 = 8;
 
 /// A photograph found on a plate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundPanel {
-    pub quad_px: [Point; 4],
+    /// Corners in plate px: top left, top right, bottom right, bottom left.
+    pub quad_px: [[f64; 2]; 4],
+    /// Share of its outline along which the photograph was seen to begin, coming from the mount: 0 (a guess) to 1.
     pub confidence: f64,
+    /// Row, from 0 at the top.
     pub row: usize,
+    /// Place in the row, from 0 at the left.
     pub column: usize,
-    pub seen: [f64; 4],
-    pub inferred: [bool; 4],
 }
 
-#[derive(Clone, Debug)]
+/// What was found on a plate.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Split {
+    /// The photographs in reading order: rows from the top, each from the left.
     pub panels: Vec<FoundPanel>,
-    pub doubts: Vec<String>,
+    /// What may be wrong with them; empty when nothing speaks against them.
+    pub doubts: Vec<Doubt>,
 }
 
 impl Split {
-    pub fn is_certain(&self) -> bool { self.doubts.is_empty() }
+    /// Whether nothing speaks against the panels. Otherwise a person should look at them.
+    pub fn is_certain(&self) -> bool {
+        self.doubts.is_empty()
+    }
 }
 
+/// Finds the photographs of a plate. A picture without mount around photographs is one panel, and a doubt says so. Equal
+/// plates give equal results.
 pub fn split(plate: &GrayImage) -> Split {
-    let factor = plate.width().max(plate.height()).div_ceil(SMALL_PX).max(1);
-    let small = reduced(plate, factor);
-    let smooth = if factor < 3 { imageproc::filter::median_filter(&small, 1, 1) } else { small };
-    let debug = std::env::var("SPLIT_DEBUG").unwrap_or_default();
-    let mut layouts: Vec<(Layout, Turn)> = Vec::new();
-    for tones in mount::candidates(&smooth) {
-        let mut mount = smooth.clone();
-        for p in mount.pixels_mut() {
-            p.0[0] = if (tones.darkest..=tones.lightest).contains(&p.0[0]) { 255 } else { 0 };
-        }
-        let tilt = mask::tilt_rad(&mount);
-        let (mut turned, turn) = mask::upright(&mount, tilt);
-        let Some(region) = mask::extent(&turned) else { continue };
-        let mut mask = Mask::new(&turned);
-        let folds = fold::find(&mask, region);
-        for fold in &folds {
-            fold.fill(&mut turned);
-        }
-        if !folds.is_empty() {
-            mask = Mask::new(&turned);
-        }
-        let Some(mut found) = layout::find(&mask, region) else { continue };
-        found.folds = folds;
-        if !debug.is_empty() {
-            eprintln!("{tones:?} tilt {:.2} region {region:?} of {:?} -> {:?}", tilt.to_degrees(), turned.dimensions(), (found.cells.len(), found.worth, &found.folds));
-            if debug == "2" { for c in &found.cells { eprintln!("    {c:?}"); } }
-        }
-        layouts.push((found, turn));
+    let (width, height) = plate.dimensions();
+    let small = (width.min(height) >= LEAST_PLATE_PX).then(|| Small::new(plate));
+    let Some(small) = small.filter(|small| small.range() >= LEAST_RANGE) else {
+        return Split { panels: Vec::new(), doubts: vec![Doubt::Nothing] };
+    };
+    let readings = reading::all(plate, &small);
+    let Some(best) = readings.first().filter(|best| best.is_credible()) else {
+        return Split { panels: vec![whole(plate)], doubts: vec![Doubt::NoMount] };
+    };
+    let panels = best.layout.cells.iter().zip(&best.outlines).map(|(cell, outline)| panel(cell, outline)).collect();
+    Split { panels, doubts: doubt::doubts(best, &readings[1..]) }
+}
+
+fn panel(cell: &Cell, outline: &Outline) -> FoundPanel {
+    FoundPanel {
+        quad_px: outline.quad_px,
+        confidence: outline.mean_seen(),
+        row: cell.row,
+        column: cell.column,
     }
-    layouts.sort_by(|a, b| b.0.worth.total_cmp(&a.0.worth));
-    let mut best: Option<(f64, Vec<FoundPanel>)> = None;
-    for (layout, turn) in layouts.iter_mut().take(4) {
-        let panels = refined(plate, layout, turn, f64::from(factor));
-        let seen = panels.iter().map(|p| p.confidence).sum::<f64>() / panels.len() as f64;
-        let score = layout.worth * seen * seen;
-        if !debug.is_empty() { eprintln!("{} panels, worth {:.2} seen {seen:.2} score {score:.3}", panels.len(), layout.worth); }
-        if best.as_ref().is_none_or(|b| score > b.0) { best = Some((score, panels)); }
+}
+
+/// The whole picture as one photograph.
+fn whole(plate: &GrayImage) -> FoundPanel {
+    let [right, bottom] = [plate.width(), plate.height()].map(f64::from);
+    let quad_px = [[0.0, 0.0], [right, 0.0], [right, bottom], [0.0, bottom]];
+    FoundPanel { quad_px, confidence: 0.0, row: 0, column: 0 }
+}
+
+/// Middle value, the upper one of two; zero of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
     }
-    let panels = best.map(|b| b.1).unwrap_or_default();
-    Split { panels, doubts: vec![] }
-}
-
-fn refined(plate: &GrayImage, layout: &mut Layout, turn: &Turn, factor: f64) -> Vec<FoundPanel> {
-        let mut panels: Vec<FoundPanel> = layout.cells.iter().map(|cell| refine(plate, layout, cell, turn, factor)).collect();
-        for (cell, panel) in layout.cells.iter_mut().zip(&panels) {
-            let q = panel.quad_px.map(|p| turn.forth(p.map(|v| v / factor)));
-            cell.edges = [0.5 * (q[0][0] + q[3][0]), 0.5 * (q[0][1] + q[1][1]), 0.5 * (q[1][0] + q[2][0]), 0.5 * (q[2][1] + q[3][1])];
-            cell.inferred = [false; 4];
-        }
-        layout::agree(&mut layout.cells, layout.region, 0, 0.03);
-        layout::agree(&mut layout.cells, layout.region, 1, 0.03);
-        for (i, cell) in layout.cells.iter().enumerate() {
-            if cell.inferred.contains(&true) {
-                panels[i] = refine(plate, layout, cell, turn, factor);
-            }
-        }
-    panels
-}
-
-fn refine(plate: &GrayImage, layout: &Layout, cell: &Cell, turn: &Turn, factor: f64) -> FoundPanel {
-    let [l, t, r, b] = cell.edges;
-    let corners = [[l, t], [r, t], [r, b], [l, b]].map(|p| turn.back(p).map(|v| v * factor));
-    let outside = cell.mount_outside(layout);
-    let size = [b - t, r - l, b - t, r - l];
-    let folds: Vec<fold::Fold> = layout.folds.iter().map(|f| fold::Fold { ends: f.ends.map(|p| turn.back(p).map(|v| v * factor)), width: f.width * factor }).collect();
-    let found: [edge::SeenEdge; 4] = std::array::from_fn(|i| {
-        let mount_px = outside[[1, 2, 3, 0][i]].map(|v| v * factor);
-        edge::find(plate, &folds, RoughEdge { ends: [corners[i], corners[(i + 1) % 4]], size_px: size[i] * factor, mount_px })
-    });
-    // corner i is where edge i-1 meets edge i.
-    let quad = std::array::from_fn(|i| meeting(found[(i + 3) % 4].ends, found[i].ends).unwrap_or(corners[i]));
-    let seen = found.map(|f| f.seen);
-    FoundPanel { quad_px: quad, confidence: seen.iter().sum::<f64>() / 4.0, row: cell.row, column: cell.column, seen, inferred: cell.inferred }
-}
-
-fn meeting([a, b]: [Point; 2], [c, d]: [Point; 2]) -> Option<Point> {
-    let (ux, uy) = (b[0] - a[0], b[1] - a[1]);
-    let (vx, vy) = (d[0] - c[0], d[1] - c[1]);
-    let det = ux * vy - uy * vx;
-    let s = ((c[0] - a[0]) * vy - (c[1] - a[1]) * vx) / det;
-    s.is_finite().then(|| [a[0] + s * ux, a[1] + s * uy])
-}
-
-fn reduced(plate: &GrayImage, factor: u32) -> GrayImage {
-    let (w, h) = (plate.width() / factor, plate.height() / factor);
-    let stride = plate.width() as usize;
-    let px = plate.as_raw();
-    let f = factor as usize;
-    let mut sums = vec![0u32; w as usize];
-    let mut out = GrayImage::new(w, h);
-    for y in 0..h as usize {
-        sums.fill(0);
-        for j in 0..f {
-            let line = &px[(y * f + j) * stride..][..w as usize * f];
-            for (s, c) in sums.iter_mut().zip(line.chunks_exact(f)) {
-                *s += c.iter().map(|v| u32::from(*v)).sum::<u32>();
-            }
-        }
-        for (x, s) in sums.iter().enumerate() {
-            out.put_pixel(x as u32, y as u32, Luma([(s / (factor * factor)) as u8]));
-        }
-    }
-    out
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

@@ -10,8 +10,10 @@ const CELLS: u32 = 28;
 const GENTLE: f32 = 4.0;
 /// ... and by a part of their tone between these.
 const GENTLE_PART: [f32; 2] = [0.03, 0.12];
-/// In the rim, where no horse is, the light may fall this fast from cell to cell: a shadow over half the panel.
+/// In the topmost rows, this share of the height, where no horse is, the light may fall this fast from cell to cell: a shadow over half the panel.
 const RIM_STEP: f32 = 0.3;
+/// See [`RIM_STEP`].
+const TOP: f64 = 0.1;
 /// The rim's cells that are wall differ by less than this part of their tone.
 const RIM: f32 = 0.12;
 /// Share of the height at the top, and of the width at the sides, where the wall's tone is looked for.
@@ -24,12 +26,15 @@ const GAP: f64 = 0.03;
 const ROW_SHARE: f64 = 0.7;
 /// Rounds that carry the wall's tone across the horse.
 const ROUNDS: usize = 60;
+/// The track's edge is blurred over so many rows.
+const BLURRED: u32 = 3;
 /// A row of the track is looked at in so many blocks: panels may be turned a little.
 const BLOCKS: u32 = 5;
-/// Least standard deviation, grey values: rounding alone makes 0.3, prints are never that clean.
-const LEAST_NOISE: f32 = 1.0;
+/// Least standard deviation, grey values: stains are no less, however fine the grain.
+const LEAST_NOISE: f32 = 1.5;
 
 /// What a panel would be without the horse.
+#[derive(Clone)]
 pub(super) struct Background {
     /// Tone, 0 to 255.
     pub(super) tone: Plane,
@@ -43,7 +48,8 @@ pub(super) struct Background {
 pub(super) fn estimate(picture: &Plane) -> Background {
     let cells = Cells::new(picture);
     let wall = cells.wall();
-    let mut spreads: Vec<f32> = cells.spread.iter().zip(&wall).filter(|(_, wall)| **wall).map(|(s, _)| *s).collect();
+    let mut spreads: Vec<f32> =
+        cells.spread.iter().zip(&wall).filter(|(_, wall)| **wall).map(|(s, _)| *s).collect();
     let noise = (quantile(&mut spreads, 0.5) * 1.48).max(LEAST_NOISE);
     let tones = cells.carried(&wall);
     let (width, height) = picture.dimensions();
@@ -94,7 +100,7 @@ impl Cells {
         let in_rim = |i: &usize| {
             let (x, y) = ((i % self.columns) as f64 + 0.5, (i / self.columns) as f64 + 0.5);
             let (x, y) = (x / self.columns as f64, y / self.rows as f64);
-            y < RIM_WIDTH || y < TRACK && (x < RIM_WIDTH || x > 1.0 - RIM_WIDTH)
+            y < RIM_WIDTH || y < TRACK && !(RIM_WIDTH..1.0 - RIM_WIDTH).contains(&x)
         };
         let rim: Vec<usize> = (0..self.median.len()).filter(in_rim).collect();
         let like = |a: usize, b: usize, part: f32| {
@@ -104,7 +110,7 @@ impl Cells {
         let commonest = rim.iter().copied().max_by_key(|i| rim.iter().filter(|j| like(*i, **j, RIM)).count());
         let step = GENTLE * self.usual_step(&rim);
         let step = step.clamp(GENTLE_PART[0], GENTLE_PART[1]);
-        let top = RIM_WIDTH * self.rows as f64;
+        let top = TOP * self.rows as f64;
         let in_top = |i: usize| ((i / self.columns) as f64) + 0.5 < top;
         let mut wall = vec![false; self.median.len()];
         let mut reached: Vec<usize> =
@@ -134,7 +140,8 @@ impl Cells {
 
     /// The cells' tones, those of the wall smoothed a little, and carried across all others.
     fn carried(&self, wall: &[bool]) -> Vec<f32> {
-        let mut known: Vec<f32> = self.median.iter().zip(wall).filter(|(_, wall)| **wall).map(|(m, _)| *m).collect();
+        let mut known: Vec<f32> =
+            self.median.iter().zip(wall).filter(|(_, wall)| **wall).map(|(m, _)| *m).collect();
         let middle = quantile(&mut known, 0.5);
         let mut tones: Vec<f32> =
             self.median.iter().zip(wall).map(|(m, wall)| if *wall { *m } else { middle }).collect();
@@ -186,7 +193,8 @@ fn add_track(picture: &Plane, tone: &mut Plane, noise: f32) -> u32 {
             break;
         }
     }
-    for y in top..height {
+    let blurred = if top < height { top.saturating_sub(BLURRED) } else { height };
+    for y in blurred..height {
         let offs: Vec<f32> = (0..BLOCKS)
             .map(|block| {
                 let xs = block * width / BLOCKS..(block + 1) * width / BLOCKS;
@@ -196,7 +204,8 @@ fn add_track(picture: &Plane, tone: &mut Plane, noise: f32) -> u32 {
             })
             .collect();
         for x in 0..width {
-            let place = ((x as f32 + 0.5) / width as f32 * BLOCKS as f32 - 0.5).clamp(0.0, BLOCKS as f32 - 1.0);
+            let place =
+                ((x as f32 + 0.5) / width as f32 * BLOCKS as f32 - 0.5).clamp(0.0, BLOCKS as f32 - 1.0);
             let (left, share) = (place as usize, place.fract());
             let right = (left + 1).min(offs.len() - 1);
             tone.get_pixel_mut(x, y).0[0] += (1.0 - share) * offs[left] + share * offs[right];

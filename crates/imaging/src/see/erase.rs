@@ -5,7 +5,7 @@ use image::{GrayImage, Luma};
 use super::lines::{Search, Tone, Upright, find};
 
 /// Lines less certain than this stay: a leg is better kept than a line removed.
-const LEAST_CONFIDENCE: f64 = 0.2;
+const LEAST_CONFIDENCE: f64 = 0.15;
 /// Broader lines may be legs, share of the width.
 const MOST_BREADTH: f64 = 0.013;
 /// What is so many times broader or deeper than the line is something before it: a leg.
@@ -13,18 +13,18 @@ const BEFORE: f64 = 1.7;
 /// Difference of tone that grain alone makes.
 const LITTLE: f64 = 12.0;
 /// Uprights lean less than this, px per px: those of 1878 lean inward by up to 0.1.
-pub(super) const UPRIGHT: Search = Search { lean: 0.16, length: 0.22 };
+const UPRIGHT: Search = Search { lean: 0.16, length: 0.22 };
 /// Panels are squared up; rails and rules stay nearly level.
 pub(super) const LEVEL: Search = Search { lean: 0.05, length: 0.4 };
 
 /// The panel without uprights and rails of a tone.
 pub(super) fn erased(image: &GrayImage, tone: Tone) -> GrayImage {
     let mut clean = image.clone();
-    for line in find(image, tone, UPRIGHT) {
+    for line in find(image, None, tone, UPRIGHT) {
         erase(&mut clean, &line);
     }
     let mut turned = transposed(&clean);
-    for line in find(&transposed(image), tone, LEVEL) {
+    for line in find(&transposed(image), None, tone, LEVEL) {
         erase(&mut turned, &line);
     }
     transposed(&turned)

@@ -2,13 +2,13 @@
 
 use image::{GrayImage, Luma, imageops};
 
-use super::lines::Tone;
 use super::background::{self, Background};
-use super::{Plane, erase, quantile};
+use super::lines::Tone;
+use super::{Plane, erase, quantile, still};
 use crate::PanelView;
 
 /// Longest side of the reduced view, px: a cannon bone is still two to four pixels broad.
-const LONGEST: u32 = 400;
+const LONGEST: u32 = 380;
 /// Where the horse is looked for first, shares of width and height: not in bands of numbers, nor on the track.
 const MIDDLE: [[f64; 2]; 2] = [[0.1, 0.9], [0.12, 0.85]];
 /// The tones furthest from the background, a share of the pixels of the middle: any horse covers more.
@@ -23,9 +23,11 @@ const MIDDLE_SHARE: f32 = 0.45;
 /// No shadow is lighter than the wall: on a dark wall anything lighter by so many standard deviations is the horse's, ...
 const LIGHTER: f32 = 2.8;
 /// ... or by this part of its contrast, whichever is more.
-const LEAST_SHARE: f32 = 0.12;
-/// A light horse's mane and tail are darker than a dark wall by so many standard deviations.
+const LEAST_SHARE: f32 = 0.2;
+/// A light horse's mane, tail and hooves are darker than wall or track by so many standard deviations.
 const DARKER: f32 = 4.5;
+/// Before a background that stands still, what differs by so many standard deviations is the horse's.
+const MOVED: f32 = 5.0;
 /// The background's tone is taken as at least this: ratios of less mean nothing.
 const LEAST_TONE: f32 = 8.0;
 
@@ -38,23 +40,36 @@ pub(super) struct Evidence {
     /// Difference of the horse's tone from the background's as a part of the background's, negative for a dark horse;
     /// 0 when there is none.
     pub(super) contrast: f32,
+    /// Whether the background is known from other frames of a camera that stands still.
+    is_still: bool,
 }
 
 impl Evidence {
+    /// Difference of tone between horse and wall in the middle of the panel.
+    pub(super) fn full_contrast(&self) -> f32 {
+        let (x, y) = (self.tone.width() / 2, self.tone.height() / 2);
+        (self.contrast * self.background.tone.get_pixel(x, y).0[0].max(LEAST_TONE)).abs()
+    }
+
+    /// Whether a tone at a pixel may be a shadow on the track as well as a hoof: of a light horse only.
+    pub(super) fn may_be_shadow(&self, x: u32, y: u32, tone: f32) -> bool {
+        self.contrast > 0.0 && y >= self.background.track && tone < self.background.tone.get_pixel(x, y).0[0]
+    }
+
     /// Log odds of horse to background for a tone at a pixel.
     pub(super) fn odds(&self, x: u32, y: u32, tone: f32) -> f32 {
         let background = self.background.tone.get_pixel(x, y).0[0];
         let noise = self.background.noise;
         let off = tone - background;
         let full = self.contrast * background.max(LEAST_TONE);
-        let odds = if full < 0.0 {
+        let odds = if self.is_still {
+            ODDS * 0.5 * (off.abs() / (MOVED * noise) - 1.0)
+        } else if full < 0.0 {
             ODDS * (off / full - MIDDLE_SHARE)
         } else if off > 0.0 {
             ODDS * 0.5 * (off / (LIGHTER * noise).max(LEAST_SHARE * full) - 1.0)
-        } else if y < self.background.track {
-            ODDS * 0.5 * (-off / (DARKER * noise) - 1.0)
         } else {
-            -MOST_ODDS
+            ODDS * 0.5 * (-off / (DARKER * noise) - 1.0)
         };
         odds.clamp(-MOST_ODDS, MOST_ODDS)
     }
@@ -65,13 +80,17 @@ pub(super) fn of_panels(views: &[PanelView]) -> Vec<Evidence> {
     let longest = views.iter().map(|view| view.image.width().max(view.image.height())).max().unwrap_or(1);
     let scale = (f64::from(LONGEST) / f64::from(longest.max(1))).min(1.0);
     let tone = horse_tone(views, scale);
-    views
-        .iter()
-        .map(|view| {
-            let tone = plane(&reduced(&erase::erased(&view.image, tone), scale));
-            let background = background::estimate(&tone);
+    let tones: Vec<Plane> =
+        views.iter().map(|view| plane(&erase::erased(&reduced(&view.image, scale), tone))).collect();
+    let walls: Vec<Background> = tones.iter().map(background::estimate).collect();
+    let still = still::background(&tones, &walls, tone);
+    tones
+        .into_iter()
+        .zip(walls)
+        .map(|(tone, wall)| {
+            let background = still.clone().unwrap_or(wall);
             let contrast = contrast(&tone, &background.tone);
-            Evidence { tone, background, contrast }
+            Evidence { tone, background, contrast, is_still: still.is_some() }
         })
         .collect()
 }
@@ -104,7 +123,8 @@ fn horse_tone(views: &[PanelView], scale: f64) -> Tone {
 /// The middle difference of what is far from the background, in the middle of the panel.
 fn contrast(tone: &Plane, background: &Plane) -> f32 {
     let (width, height) = (f64::from(tone.width()), f64::from(tone.height()));
-    let inside = |k: u32, size: f64, [from, to]: [f64; 2]| (from..to).contains(&((f64::from(k) + 0.5) / size));
+    let inside =
+        |k: u32, size: f64, [from, to]: [f64; 2]| (from..to).contains(&((f64::from(k) + 0.5) / size));
     let mut off: Vec<f32> = tone
         .enumerate_pixels()
         .filter(|(x, y, _)| inside(*x, width, MIDDLE[0]) && inside(*y, height, MIDDLE[1]))

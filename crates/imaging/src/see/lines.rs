@@ -16,6 +16,8 @@ const MOST_RESPONSE: f32 = 4.0;
 /// Response over noise below which a strip speaks against the line.
 const LEAST_RESPONSE: f32 = 1.5;
 
+/// In place of a response: cannot be seen.
+const HIDDEN: f32 = -1.0;
 /// Difference of tone that counts fully in a line's place.
 const MOST_DEPTH: f64 = 40.0;
 
@@ -66,16 +68,20 @@ impl Strips {
     fn new(image: &GrayImage) -> Self {
         let (width, height) = image.dimensions();
         let pixel = [width.div_ceil(COLUMNS), height.div_ceil(STRIPS)];
-        let mut mean = Plane::new(width.div_ceil(pixel[0]), height.div_ceil(pixel[1]));
-        let mut count = mean.clone();
-        for (x, y, value) in image.enumerate_pixels() {
-            let (column, row) = (x / pixel[0], y / pixel[1]);
-            mean.get_pixel_mut(column, row).0[0] += f32::from(value.0[0]);
-            count.get_pixel_mut(column, row).0[0] += 1.0;
+        let (columns, rows) =
+            (width.div_ceil(pixel[0].max(1)) as usize, height.div_ceil(pixel[1].max(1)) as usize);
+        let mut mean = vec![0.0; columns * rows];
+        for (y, row) in image.as_raw().chunks_exact(width.max(1) as usize).enumerate() {
+            let strip = y / pixel[1] as usize * columns;
+            for (sums, values) in mean[strip..].iter_mut().zip(row.chunks(pixel[0] as usize)) {
+                *sums += values.iter().map(|v| f32::from(*v)).sum::<f32>() / values.len() as f32;
+            }
         }
-        for (sum, count) in mean.pixels_mut().zip(count.pixels()) {
-            sum.0[0] /= count.0[0];
+        for (y, row) in mean.chunks_exact_mut(columns.max(1)).enumerate() {
+            let rows = (height - y as u32 * pixel[1]).min(pixel[1]) as f32;
+            row.iter_mut().for_each(|sum| *sum /= rows);
         }
+        let mean = Plane::from_raw(columns as u32, rows as u32, mean).unwrap_or_default();
         Self { mean, pixel: pixel.map(f64::from) }
     }
 
@@ -91,6 +97,16 @@ impl Strips {
             }
         }
         best
+    }
+
+    /// Marks columns of strips that are mostly hidden.
+    fn hide(&self, response: &mut Plane, hidden: &GrayImage) {
+        for (x, y, value) in response.enumerate_pixels_mut() {
+            let [column, row] = [x, y].map(|k| f64::from(k) + 0.5);
+            if is_hidden(hidden, column * self.pixel[0], (row * self.pixel[1]) as u32) {
+                value.0[0] = HIDDEN;
+            }
+        }
     }
 
     fn ridge(&self, tone: Tone, reach: u32) -> Plane {
@@ -109,22 +125,39 @@ impl Strips {
     }
 }
 
-/// A line through the strips: columns at the first and last strip, the strips it spans, and its worth.
+/// A line through the strips: columns at the first and last strip, and the part that is seen.
 #[derive(Clone, Copy)]
 struct Candidate {
     top: f64,
     bottom: f64,
+    run: Run,
+}
+
+/// Strips in which a line is seen.
+#[derive(Clone, Copy, Default)]
+struct Run {
     from: usize,
     to: usize,
+    /// Strips between them that are not hidden.
+    seen: usize,
+    /// How much speaks for the line.
     worth: f32,
 }
 
-/// All lines of a tone, left to right.
-pub(super) fn find(image: &GrayImage, tone: Tone, search: Search) -> Vec<Upright> {
+/// All lines of a tone, left to right. What is hidden (above 0) speaks neither for a line nor against it.
+pub(super) fn find(
+    image: &GrayImage,
+    hidden: Option<&GrayImage>,
+    tone: Tone,
+    search: Search,
+) -> Vec<Upright> {
     let strips = Strips::new(image);
-    let response = strips.response(tone, image.width());
+    let mut response = strips.response(tone, image.width());
+    if let Some(hidden) = hidden {
+        strips.hide(&mut response, hidden);
+    }
     let mut candidates = candidates(&response, &strips, search);
-    candidates.sort_by(|a, b| b.worth.total_cmp(&a.worth));
+    candidates.sort_by(|a, b| b.run.worth.total_cmp(&a.run.worth));
     let mut kept: Vec<Candidate> = Vec::new();
     let apart = REACHES[1] * f64::from(image.width()) / strips.pixel[0];
     for candidate in candidates {
@@ -136,60 +169,76 @@ pub(super) fn find(image: &GrayImage, tone: Tone, search: Search) -> Vec<Upright
             kept.push(candidate);
         }
     }
-    let mut lines: Vec<Upright> = kept.iter().map(|c| refined(image, tone, &strips, c)).collect();
+    let mut lines: Vec<Upright> = kept.iter().map(|c| refined(image, hidden, tone, &strips, c)).collect();
+    lines.retain(|line| line.lean.abs() <= search.lean);
     lines.sort_by(|a, b| a.at.total_cmp(&b.at));
     lines
 }
 
 fn candidates(response: &Plane, strips: &Strips, search: Search) -> Vec<Candidate> {
-    let (columns, rows) = (response.width() as usize, response.height() as usize);
+    let (columns, rows) = (response.width() as i64, response.height() as usize);
     let shortest = (search.length * rows as f64).ceil() as usize;
     let most = (search.lean * rows as f64 * strips.pixel[1] / strips.pixel[0]).round() as i64;
+    let values: Vec<&[f32]> = response.as_raw().chunks_exact(response.width().max(1) as usize).collect();
     let mut all = Vec::new();
-    for shift in -most..=most {
+    // Neighbouring columns are averaged over: every second lean is enough.
+    for shift in (-most..=most).step_by(2) {
+        let top = -0.5 * shift as f64;
         let step = shift as f64 / (rows.max(2) - 1) as f64;
+        let offsets: Vec<i64> = (0..rows).map(|row| (top + step * row as f64).round() as i64).collect();
         for column in 0..columns {
-            // Best run of strips along the line (Kadane).
-            let (mut sum, mut start) = (0.0f32, 0);
-            let mut best = Candidate { top: 0.0, bottom: 0.0, from: 0, to: 0, worth: 0.0 };
-            for row in 0..rows {
-                let x = (column as f64 - 0.5 * shift as f64 + step * row as f64).round();
-                let value = if x >= 0.0 && x < columns as f64 {
-                    response.get_pixel(x as u32, row as u32).0[0]
-                } else {
-                    0.0
-                };
-                if sum <= 0.0 {
-                    (sum, start) = (0.0, row);
-                }
-                sum += value - LEAST_RESPONSE;
-                if sum > best.worth {
-                    best = Candidate { from: start, to: row + 1, worth: sum, ..best };
-                }
-            }
-            if best.to - best.from >= shortest {
-                let top = column as f64 - 0.5 * shift as f64;
-                all.push(Candidate { top, bottom: top + shift as f64, ..best });
+            let run = best_run(values.iter().zip(&offsets).map(|(row, offset)| {
+                usize::try_from(column + offset).ok().and_then(|x| row.get(x)).copied().unwrap_or(0.0)
+            }));
+            if run.seen >= shortest {
+                let top = column as f64 + top;
+                all.push(Candidate { top, bottom: top + shift as f64, run });
             }
         }
     }
     all
 }
 
+/// The run of strips that speaks most for a line (Kadane's algorithm).
+fn best_run(responses: impl Iterator<Item = f32>) -> Run {
+    let mut best = Run::default();
+    let mut run = Run::default();
+    for (row, response) in responses.enumerate().filter(|(_, response)| *response != HIDDEN) {
+        if run.worth <= 0.0 {
+            run = Run { from: row, ..Run::default() };
+        }
+        run.to = row + 1;
+        run.seen += 1;
+        run.worth += response - LEAST_RESPONSE;
+        if run.worth > best.worth {
+            best = run;
+        }
+    }
+    best
+}
+
 /// Least squares through the middles of the line in each strip, with weights that fall with the distance.
-fn refined(image: &GrayImage, tone: Tone, strips: &Strips, candidate: &Candidate) -> Upright {
+fn refined(
+    image: &GrayImage,
+    hidden: Option<&GrayImage>,
+    tone: Tone,
+    strips: &Strips,
+    candidate: &Candidate,
+) -> Upright {
     let [pixel_x, pixel_y] = strips.pixel;
     let rows = f64::from(strips.mean.height()).max(2.0) - 1.0;
     let lean_in_columns = (candidate.bottom - candidate.top) / rows;
     let lean = lean_in_columns * pixel_x / pixel_y;
     let at = (candidate.top + 0.5) * pixel_x - lean * 0.5 * pixel_y;
-    let (from, to) = (candidate.from as f64 * pixel_y, candidate.to as f64 * pixel_y);
+    let (from, to) = (candidate.run.from as f64 * pixel_y, candidate.run.to as f64 * pixel_y);
     let to = to.min(f64::from(image.height()));
-    let confidence = f64::from(candidate.worth) / f64::from((MOST_RESPONSE - LEAST_RESPONSE) * STRIPS as f32);
+    let confidence =
+        f64::from(candidate.run.worth) / f64::from((MOST_RESPONSE - LEAST_RESPONSE) * STRIPS as f32);
     let mut line = Upright { at, lean, from, to, breadth: 1.0, depth: 0.0, confidence: confidence.min(1.0) };
     let reach = (REACHES[1] * f64::from(image.width())).max(3.0);
     for pass in 0..3 {
         let middles: Vec<_> = (from as u32..to as u32)
+            .filter(|row| hidden.is_none_or(|hidden| !is_hidden(hidden, line.x(f64::from(*row) + 0.5), *row)))
             .filter_map(|row| middle(image, tone, row, line.x(f64::from(row) + 0.5), reach))
             .collect();
         let spread = [3.0, 2.0, 1.5][pass] * (1.0f64).max(line.breadth / 3.0);
@@ -201,6 +250,10 @@ fn refined(image: &GrayImage, tone: Tone, strips: &Strips, candidate: &Candidate
         line.depth = f64::from(super::quantile(&mut depths, 0.5));
     }
     line
+}
+
+fn is_hidden(hidden: &GrayImage, x: f64, y: u32) -> bool {
+    x >= 0.0 && hidden.get_pixel_checked(x as u32, y).is_some_and(|pixel| pixel.0[0] > 0)
 }
 
 /// Where the line crosses one row.
@@ -234,7 +287,12 @@ fn middle(image: &GrayImage, tone: Tone, row: u32, x: f64, reach: f64) -> Option
         peak = peak.max(depth);
         moment += depth * (f64::from(column) + 0.5);
     }
-    (peak >= 4.0).then(|| Middle { x: moment / sum, y: f64::from(row) + 0.5, depth: peak, breadth: sum / peak })
+    (peak >= 4.0).then(|| Middle {
+        x: moment / sum,
+        y: f64::from(row) + 0.5,
+        depth: peak,
+        breadth: sum / peak,
+    })
 }
 
 fn fitted(middles: &[Middle], line: &Upright, spread: f64) -> Option<(f64, f64)> {

@@ -62,13 +62,17 @@ impl Pulls {
     fn new(tone: &Plane, noise: f32) -> Self {
         let width = tone.width() as usize;
         let tones = tone.as_raw();
-        let scale = -0.5 / (noise * noise).max(1e-6);
-        let pull = |a: f32, b: f32| PULL * (0.1 + 0.9 * (scale * (a - b) * (a - b)).exp());
+        let scale = 0.25 / (noise * noise).max(1e-6);
+        let pull = |a: f32, b: f32| {
+            let unlike = 1.0 + scale * (a - b) * (a - b);
+            PULL * (0.1 + 0.9 / (unlike * unlike))
+        };
         let right = (0..tones.len())
             .map(|i| if (i + 1) % width == 0 { 0.0 } else { pull(tones[i], tones[i + 1]) })
             .collect();
-        let down =
-            (0..tones.len()).map(|i| tones.get(i + width).map_or(0.0, |below| pull(tones[i], *below))).collect();
+        let down = (0..tones.len())
+            .map(|i| tones.get(i + width).map_or(0.0, |below| pull(tones[i], *below)))
+            .collect();
         Self { right, down }
     }
 }

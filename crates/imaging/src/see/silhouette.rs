@@ -1,24 +1,34 @@
 //! Horse and rider, apart from wall and track.
 
-use image::Luma;
+use image::{GrayImage, Luma};
 
 use super::evidence::{self, Evidence};
+use super::trust::{self, Look};
 use super::{Plane, Silhouette, outline, relax};
 use crate::PanelView;
 
+/// A horse in a panel with a shorter side is a few specks.
+const LEAST_PX: u32 = 16;
 /// Neighbours whose tones differ by less than this share of the contrast pull together.
 const LIKE: f32 = 0.15;
 
 /// The horse of every panel.
 pub(super) fn find(views: &[PanelView]) -> Vec<Silhouette> {
-    evidence::of_panels(views)
+    let (masks, looks): (Vec<GrayImage>, Vec<Look>) = evidence::of_panels(views)
         .iter()
         .zip(views)
         .map(|(evidence, view)| {
+            let [width, height] = [evidence.tone.width(), evidence.tone.height()];
+            if width.min(height) < LEAST_PX {
+                let mask = GrayImage::new(view.image.width(), view.image.height());
+                return (mask, Look { area: 0.0, confidence: 0.0 });
+            }
             let horse = outline::pieces(evidence, &probability(evidence));
-            Silhouette { mask: outline::refined(&view.image, evidence, &horse), confidence: 1.0 }
+            (outline::refined(&view.image, evidence, &horse), Look::new(evidence, &horse))
         })
-        .collect()
+        .unzip();
+    let confidences = trust::confidences(&looks);
+    masks.into_iter().zip(confidences).map(|(mask, confidence)| Silhouette { mask, confidence }).collect()
 }
 
 fn probability(evidence: &Evidence) -> Plane {
@@ -26,7 +36,5 @@ fn probability(evidence: &Evidence) -> Plane {
     let odds = Plane::from_fn(tone.width(), tone.height(), |x, y| {
         Luma([evidence.odds(x, y, tone.get_pixel(x, y).0[0])])
     });
-    let noise = evidence.background.noise;
-    let wall = evidence.background.tone.get_pixel(tone.width() / 2, tone.height() / 2).0[0];
-    relax::relaxed(&odds, tone, (2.0 * noise).max(LIKE * (evidence.contrast * wall).abs()))
+    relax::relaxed(&odds, tone, (2.0 * evidence.background.noise).max(LIKE * evidence.full_contrast()))
 }

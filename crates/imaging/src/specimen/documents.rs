@@ -1,12 +1,13 @@
 //! A specimen's manifest and annotation, so that it goes through everything a real plate goes through.
 
 use muybridge_capture::{
-    ANNOTATION_SCHEMA, Annotation, Calibration, Camera, Known, KnownLength, MANIFEST_SCHEMA, Manifest, Mark, Panel,
-    PanelAnnotation, PanelUse, Parallax, Plane, PlateImage, Position, Scale, ScaleSource, StrideSpan, Time, TimeSource,
+    ANNOTATION_SCHEMA, Annotation, Calibration, Camera, Known, KnownLength, MANIFEST_SCHEMA, Manifest, Mark,
+    Panel, PanelAnnotation, PanelUse, Parallax, Plane, PlateImage, Position, Scale, ScaleSource, StrideSpan,
+    Time, TimeSource,
 };
 
-use super::truth::{PanelTruth, SpecimenTruth};
 use super::NOTICE;
+use super::truth::{PanelTruth, SpecimenTruth};
 
 /// Coordinates of the truth are rounded to a hundredth: the standard deviation of a placed point, px. Validation wants more
 /// than nothing.
@@ -34,7 +35,12 @@ impl SpecimenTruth {
             licence: "as this program".to_string(),
             printed: self.printed.clone(),
             facing: Some(self.facing),
-            images: vec![PlateImage { file: file.to_string(), sha256: sha256.to_string(), width_px, height_px }],
+            images: vec![PlateImage {
+                file: file.to_string(),
+                sha256: sha256.to_string(),
+                width_px,
+                height_px,
+            }],
             panels: self
                 .panels
                 .iter()
@@ -75,7 +81,10 @@ impl SpecimenTruth {
                 speed_m_s: None,
                 stride_time_s: None,
             },
-            camera: Camera { distance_m: exact(style.camera_distance_m), height_m: exact(style.camera_height_m) },
+            camera: Camera {
+                distance_m: exact(style.camera_distance_m),
+                height_m: exact(style.camera_height_m),
+            },
         }
     }
 
@@ -113,7 +122,11 @@ fn annotated(panel: &PanelTruth) -> PanelAnnotation {
         panel: panel.camera.panel,
         usage: PanelUse::Stride,
         ground_px: panel.ground_px,
-        marks: panel.uprights.iter().map(|upright| Mark { mark: upright.mark, at_px: upright.ends_px[0] }).collect(),
+        marks: panel
+            .uprights
+            .iter()
+            .map(|upright| Mark { mark: upright.mark, at_px: upright.ends_px[0] })
+            .collect(),
         contacts: panel.contacts,
         keypoints: panel.keypoints.clone(),
     }

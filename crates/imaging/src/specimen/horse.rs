@@ -24,7 +24,8 @@ const UNDERLINE: [Point; 9] = [
     [0.15, -0.585],
 ];
 /// Groin and buttock, m from the croup in the frame of the pelvis.
-const HINDQUARTER: [Point; 5] = [[-0.02, -0.52], [-0.20, -0.50], [-0.34, -0.44], [-0.425, -0.33], [-0.43, -0.22]];
+const HINDQUARTER: [Point; 5] =
+    [[-0.02, -0.52], [-0.20, -0.50], [-0.34, -0.44], [-0.425, -0.33], [-0.43, -0.22]];
 /// Profile of the head from the poll round the nose, in shares of its length: along it, towards the jaw.
 const PROFILE: [Point; 18] = [
     [0.0, 0.0],
@@ -58,7 +59,8 @@ const TAIL_M: f64 = 0.78;
 const TAIL_SPREAD_M: f64 = 0.055;
 const TAIL_JOINTS: usize = 14;
 /// Strands of the tail: place across it, -1 to 1, and the joint at which it ends.
-const STRANDS: [(f64, usize); 7] = [(-1.0, 11), (-0.65, 13), (-0.3, 12), (0.0, 14), (0.35, 12), (0.7, 13), (1.0, 10)];
+const STRANDS: [(f64, usize); 7] =
+    [(-1.0, 11), (-0.65, 13), (-0.3, 12), (0.0, 14), (0.35, 12), (0.7, 13), (1.0, 10)];
 /// Tufts of the mane.
 const TUFTS: usize = 44;
 /// How far light reaches round trunk and limbs, m: about a third of their half width.
@@ -66,7 +68,12 @@ const TRUNK_ROUND_M: f64 = 0.085;
 const LIMB_ROUND_M: f64 = 0.028;
 
 /// All layers of the horse, the farthest first.
-pub(super) fn layers(view: &Viewer<'_>, pose: &PosedHorse, motion: &SpecimenMotion, tones: &Tones) -> Vec<Layer> {
+pub(super) fn layers(
+    view: &Viewer<'_>,
+    pose: &PosedHorse,
+    motion: &SpecimenMotion,
+    tones: &Tones,
+) -> Vec<Layer> {
     let coat = if tones.horse < tones.wall { &DARK_COAT } else { &PALE_COAT };
     let body = Body::new(view, pose);
     let limb = |side, pair| motion.facing.limb(side, pair);
@@ -85,8 +92,10 @@ pub(super) fn layers(view: &Viewer<'_>, pose: &PosedHorse, motion: &SpecimenMoti
     for pair in [Pair::Hind, Pair::Fore] {
         trunk.extend(body.upper(limb(NearOff::Near, pair)));
     }
-    let trunk = Layer { blobs: body.relief(), ..Layer::new(Part::Body, trunk, view.length_px(TRUNK_ROUND_M)) };
-    let hair = |part, shapes| Layer { light: coat.hair, ..Layer::new(part, shapes, view.length_px(LIMB_ROUND_M)) };
+    let trunk =
+        Layer { blobs: body.relief(), ..Layer::new(Part::Body, trunk, view.length_px(TRUNK_ROUND_M)) };
+    let hair =
+        |part, shapes| Layer { light: coat.hair, ..Layer::new(part, shapes, view.length_px(LIMB_ROUND_M)) };
     vec![
         off(Pair::Hind, Part::OffHind),
         off(Pair::Fore, Part::OffFore),
@@ -107,7 +116,7 @@ struct Coat {
 }
 
 /// A dark horse has a darker mane, a grey one a paler mane; both stand out from the wall.
-const DARK_COAT: Coat = Coat { off: 0.72, hair: 0.62 };
+const DARK_COAT: Coat = Coat { off: 0.72, hair: 0.7 };
 const PALE_COAT: Coat = Coat { off: 0.86, hair: 1.12 };
 
 /// Head, neck and trunk.
@@ -134,15 +143,7 @@ impl<'a> Body<'a> {
         let along = scaled([dx, dy], 1.0 / dx.hypot(dy).max(f64::MIN_POSITIVE));
         let dock = sub(flat(pose.dock), croup);
         let pelvis_rad = dock[1].atan2(dock[0]) - REST_DOCK[1].atan2(REST_DOCK[0]);
-        Self {
-            view,
-            pose,
-            croup,
-            withers,
-            up: [-along[1], along[0]],
-            pelvis_rad,
-            z_m: pose.croup[2],
-        }
+        Self { view, pose, croup, withers, up: [-along[1], along[0]], pelvis_rad, z_m: pose.croup[2] }
     }
 
     /// A point of the trunk: share of the distance croup to withers, m over the line between them.
@@ -249,13 +250,18 @@ impl<'a> Body<'a> {
                 let joint = (along as usize).min(2);
                 let root = between(crest[joint], crest[joint + 1], along - joint as f64);
                 // Hair is shorter towards the poll and the withers; no two tufts are alike.
-                let (from_end, waver) = ((2.0 * along).min(3.4 - along).min(1.0), (7.3 * (i * i) as f64).sin());
+                let (from_end, waver) =
+                    ((2.0 * along).min(3.4 - along).min(1.0), (7.3 * (i * i) as f64).sin());
                 let length = (0.02 + 0.10 * from_end + 0.035 * waver) * self.view.size;
                 let hang = scaled(down[joint], length * (1.0 - 0.55 * wind));
                 let blown = scaled([-1.0, 0.30 + 0.2 * waver], length * (0.25 + 0.55 * wind));
                 let lifted = add(root, scaled(down[joint], -0.4 * CREST_M * self.view.size));
-                let circle = |at: Point, radius_m: f64| (self.view.px(at, self.z_m), self.view.length_px(radius_m));
-                Shape::Capsule([circle(lifted, 0.012 + 0.010 * from_end), circle(add(lifted, add(hang, blown)), 0.007)])
+                let circle =
+                    |at: Point, radius_m: f64| (self.view.px(at, self.z_m), self.view.length_px(radius_m));
+                Shape::Capsule([
+                    circle(lifted, 0.012 + 0.010 * from_end),
+                    circle(add(lifted, add(hang, blown)), 0.007),
+                ])
             })
             .collect()
     }
@@ -280,7 +286,11 @@ impl<'a> Body<'a> {
             let circle = move |i: usize, curve: &[Point]| {
                 let share = i as f64 / TAIL_JOINTS as f64;
                 let [dx, dy] = sub(curve[(i + 1).min(TAIL_JOINTS)], curve[i.saturating_sub(1)]);
-                let across = scaled([-dy, dx], aside * TAIL_SPREAD_M * size * (share * 2.2).min(1.0) / dx.hypot(dy).max(f64::MIN_POSITIVE));
+                let across = scaled(
+                    [-dy, dx],
+                    aside * TAIL_SPREAD_M * size * (share * 2.2).min(1.0)
+                        / dx.hypot(dy).max(f64::MIN_POSITIVE),
+                );
                 let radius = (0.032 - 0.008 * share) * (1.0 - (i as f64 / end as f64).powi(4)) + 0.003;
                 (self.view.px(add(curve[i], across), self.z_m), self.view.length_px(radius))
             };

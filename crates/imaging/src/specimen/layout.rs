@@ -79,6 +79,16 @@ impl PanelLayout {
         (from < to).then(|| [between(a, b, from), between(a, b, to)])
     }
 
+    /// Distance of a point from the nearer side edge, px; negative outside.
+    pub(super) fn side_distance_px(&self, point: Point) -> f64 {
+        let [top_left, top_right, bottom_right, bottom_left] = self.quad_px;
+        let inside = |a: Point, b: Point| {
+            let ([dx, dy], [px, py]) = (sub(b, a), sub(point, a));
+            (dx * py - dy * px) / dx.hypot(dy).max(f64::MIN_POSITIVE)
+        };
+        inside(top_right, bottom_right).min(inside(bottom_left, top_left))
+    }
+
     /// The panel's window of the plate.
     pub(super) fn window(&self, plate_px: [u32; 2]) -> Window {
         Window::around(&self.quad_px, plate_px)
@@ -106,7 +116,8 @@ impl Layout {
         let page = page(columns.length, rows.length, style);
         let plate = [0, 1].map(|i| (2.0 * page.plate_centre[i]) as u32);
         let battery = Battery::new(motion, style);
-        let cells = (0..style.rows as usize).flat_map(|row| (0..style.columns as usize).map(move |c| (row, c)));
+        let cells =
+            (0..style.rows as usize).flat_map(|row| (0..style.columns as usize).map(move |c| (row, c)));
         let panels = cells
             .zip(&motion.poses)
             .enumerate()
@@ -115,7 +126,9 @@ impl Layout {
                 let quad = scattered_quad(low, style, random);
                 let tilt = page.tilt_rad + style.panel_tilt_sd_deg.to_radians() * random.normal();
                 let centre = centre(&quad);
-                let quad_px = quad.map(|p| page.plate_from_page(add(centre, clockwise(sub(p, centre), tilt - page.tilt_rad))));
+                let quad_px = quad.map(|p| {
+                    page.plate_from_page(add(centre, clockwise(sub(p, centre), tilt - page.tilt_rad)))
+                });
                 PanelLayout { quad_px, camera: battery.camera(index, pose, motion, quad_px, tilt) }
             })
             .collect();
@@ -166,7 +179,12 @@ fn page(width: f64, height: f64, style: &SpecimenStyle) -> Page {
     let tilt_rad = style.tilt_deg.to_radians();
     let (sin, cos) = (tilt_rad.sin().abs(), tilt_rad.cos());
     let plate = [size[0] * cos + size[1] * sin, size[0] * sin + size[1] * cos].map(f64::ceil);
-    Page { size, mount: [card, card, card + width, card + height], tilt_rad, plate_centre: scaled(plate, 0.5) }
+    Page {
+        size,
+        mount: [card, card, card + width, card + height],
+        tilt_rad,
+        plate_centre: scaled(plate, 0.5),
+    }
 }
 
 /// Corners of a cell's photograph, page px, from its top left corner.
@@ -174,7 +192,8 @@ fn scattered_quad(low: Point, style: &SpecimenStyle, random: &mut Random) -> [Po
     let reach = 0.18 * style.unevenness * style.gutter_px[0].min(style.gutter_px[1]);
     let [width, height] = style.panel_px;
     let corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
-    corners.map(|corner| add(add(low, corner), [random.between(-reach, reach), random.between(-reach, reach)]))
+    corners
+        .map(|corner| add(add(low, corner), [random.between(-reach, reach), random.between(-reach, reach)]))
 }
 
 fn centre(quad: &[Point; 4]) -> Point {
@@ -217,7 +236,14 @@ impl Battery {
     }
 
     /// The camera of a panel on the plate; its axis passes through the panel's middle.
-    fn camera(&self, index: usize, pose: &PosedHorse, motion: &SpecimenMotion, quad_px: [Point; 4], tilt_rad: f64) -> PanelCamera {
+    fn camera(
+        &self,
+        index: usize,
+        pose: &PosedHorse,
+        motion: &SpecimenMotion,
+        quad_px: [Point; 4],
+        tilt_rad: f64,
+    ) -> PanelCamera {
         let height_px = 0.5 * (sub(quad_px[3], quad_px[0])[1] + sub(quad_px[2], quad_px[1])[1]);
         let down = clockwise([0.0, 1.0], tilt_rad);
         PanelCamera {
@@ -242,7 +268,13 @@ struct Extent {
 }
 
 impl Extent {
-    fn of(poses: &[PosedHorse], first: f64, spacing_m: f64, motion: &SpecimenMotion, style: &SpecimenStyle) -> Self {
+    fn of(
+        poses: &[PosedHorse],
+        first: f64,
+        spacing_m: f64,
+        motion: &SpecimenMotion,
+        style: &SpecimenStyle,
+    ) -> Self {
         let size = motion.withers_height_m;
         let mut extent = Self { ahead: 0.1, behind: -0.1, top: 0.1 };
         for (index, pose) in poses.iter().enumerate() {

@@ -42,7 +42,8 @@ const HIND_CANNON: [Station; 4] = [
     Station(0.75, 0.0, 0.034),
     Station(1.0, -0.004, 0.045),
 ];
-const PASTERN: [Station; 3] = [Station(0.08, -0.004, 0.042), Station(0.3, 0.0, 0.033), Station(0.5, 0.0, 0.038)];
+const PASTERN: [Station; 3] =
+    [Station(0.08, -0.004, 0.042), Station(0.3, 0.0, 0.033), Station(0.5, 0.0, 0.038)];
 /// The point of the hock, from the tendon above it to the cannon below: the first two on the tibia, the last on the cannon.
 const HOCK_POINT: [Station; 3] =
     [Station(0.58, -0.045, 0.022), Station(0.95, -0.066, 0.022), Station(0.2, -0.034, 0.018)];
@@ -125,7 +126,7 @@ fn segment(pose: &PosedHorse, limb: Limb, index: usize) -> Segment {
 }
 
 /// Capsules through a row of circles.
-fn chain(circles: &[(Point, f64)]) -> impl Iterator<Item = Shape> + '_ {
+pub(super) fn chain(circles: &[(Point, f64)]) -> impl Iterator<Item = Shape> + '_ {
     circles.windows(2).map(|two| Shape::Capsule([two[0], two[1]]))
 }
 

@@ -88,7 +88,8 @@ impl Layer {
             let place = [f64::from(mask.window.left + x) + 0.5, f64::from(mask.window.top + y) + 0.5];
             let blobs: f64 = self.blobs.iter().map(|blob| blob.at(place)).sum();
             let shade = RELIEF * lit + RIM * (at(0, 0) - 0.8) + blobs as f32;
-            let value = ((tone * self.light) as f32 * (1.0 + shading as f32 * shade)).clamp(BLACKEST, WHITEST);
+            let value =
+                ((tone * self.light) as f32 * (1.0 + shading as f32 * shade)).clamp(BLACKEST, WHITEST);
             onto.blend(mask.window.left + x, mask.window.top + y, value, cover.0[0] * self.grown_out(place));
         }
         mask
@@ -97,7 +98,8 @@ impl Layer {
     /// How much of the layer is seen at a place: nothing at its root, all of it away from there.
     fn grown_out(&self, place: Point) -> f32 {
         self.root.map_or(1.0, |(centre, radius)| {
-            let share = (2.0 * (sub(place, centre)[0].hypot(sub(place, centre)[1]) / radius - 0.5)).clamp(0.0, 1.0);
+            let share =
+                (2.0 * (sub(place, centre)[0].hypot(sub(place, centre)[1]) / radius - 0.5)).clamp(0.0, 1.0);
             (share * share * (3.0 - 2.0 * share)) as f32
         })
     }
@@ -137,12 +139,10 @@ impl Canvas {
         self.lay(&mask, |_, _| tone as f32, opacity);
     }
 
-    /// Lays tones over a region: a function of the window's pixel.
+    /// Lays tones over a region: a function of the mask's pixel.
     pub(super) fn lay(&mut self, mask: &Mask, tone: impl Fn(u32, u32) -> f32, opacity: f64) {
         for (x, y, cover) in mask.cover.enumerate_pixels().filter(|(_, _, cover)| cover.0[0] > 0.0) {
-            let (x, y) = (mask.window.left + x, mask.window.top + y);
-            let value = tone(x - self.window.left, y - self.window.top);
-            self.blend(x, y, value, cover.0[0] * opacity as f32);
+            self.blend(mask.window.left + x, mask.window.top + y, tone(x, y), cover.0[0] * opacity as f32);
         }
     }
 }

@@ -9,8 +9,8 @@ use super::layout::{Layout, PanelLayout};
 use super::limb::Viewer;
 use super::paint::{Canvas, Layer, Part};
 use super::raster::{Field, Mask, Point, Shape};
-use super::style::SpecimenStyle;
 use super::scene::Scene;
+use super::style::SpecimenStyle;
 use super::{PosedHorse, Silhouette, SpecimenMotion, horse, rider};
 
 /// How dark the shadowed half of a panel becomes.
@@ -21,6 +21,8 @@ pub(super) struct Photograph {
     canvas: Canvas,
     /// What stands in front of what, the farthest first.
     covers: Vec<(Part, Mask)>,
+    /// How it is cut.
+    print: Mask,
 }
 
 impl Photograph {
@@ -52,7 +54,8 @@ impl Photograph {
             let layer = Layer::new(Part::Hurdle, shapes, 1.0);
             covers.push((layer.part, layer.paint(&mut canvas, style.tones.uprights, style.shading)));
         }
-        let mut photograph = Self { canvas, covers };
+        let print = Mask::of(&[Shape::polygon(panel.quad_px.to_vec())], canvas.window, 0.0);
+        let mut photograph = Self { canvas, covers, print };
         photograph.light(panel, style);
         photograph
     }
@@ -74,7 +77,8 @@ impl Photograph {
             }
         }
         let mask = GrayImage::from_fn(window.width, window.height, |x, y| {
-            Luma([(255.0 * cover.get_pixel(x, y).0[0]).round() as u8])
+            let place = [f64::from(window.left + x) + 0.5, f64::from(window.top + y) + 0.5];
+            Luma([(255.0 * cover.get_pixel(x, y).0[0].min(self.print.at(place))).round() as u8])
         });
         Silhouette { left_px: window.left, top_px: window.top, mask }
     }
@@ -96,14 +100,18 @@ impl Photograph {
     }
 
     /// Puts the print on the plate.
-    pub(super) fn paste(&self, plate: &mut Canvas, panel: &PanelLayout) {
-        let print = Mask::of(&[Shape::polygon(panel.quad_px.to_vec())], self.canvas.window, 0.0);
-        plate.lay(&print, |x, y| self.canvas.tones.get_pixel(x - self.canvas.window.left, y - self.canvas.window.top).0[0], 1.0);
+    pub(super) fn paste(&self, plate: &mut Canvas) {
+        let (print, window) = (self.print.window, self.canvas.window);
+        let [dx, dy] = [print.left - window.left, print.top - window.top];
+        plate.lay(&self.print, |x, y| self.canvas.tones.get_pixel(x + dx, y + dy).0[0], 1.0);
     }
 }
 
 /// Smooth noise of standard deviation about 1 whose features are as large as `cell_px`.
 pub(super) fn mottle(width: u32, height: u32, cell_px: [f64; 2], random: &mut Random) -> Field {
+    if width == 0 || height == 0 {
+        return Field::new(width, height);
+    }
     let cells = |size: u32, cell: f64| (f64::from(size) / cell).ceil() as u32 + 2;
     let (columns, rows) = (cells(width, cell_px[0]), cells(height, cell_px[1]));
     let coarse = Field::from_fn(columns, rows, |_, _| Luma([random.normal() as f32]));
@@ -111,7 +119,12 @@ pub(super) fn mottle(width: u32, height: u32, cell_px: [f64; 2], random: &mut Ra
 }
 
 /// The finished picture: fold, blur, grain, scratches.
-pub(super) fn developed(plate: Canvas, layout: &Layout, style: &SpecimenStyle, random: &mut Random) -> GrayImage {
+pub(super) fn developed(
+    plate: Canvas,
+    layout: &Layout,
+    style: &SpecimenStyle,
+    random: &mut Random,
+) -> GrayImage {
     let [width, height] = layout.size_px;
     let mut tones = plate.tones;
     if style.blur_px > 0.0 && width > 0 && height > 0 {
@@ -121,7 +134,9 @@ pub(super) fn developed(plate: Canvas, layout: &Layout, style: &SpecimenStyle, r
     scratch(&mut canvas, layout, style, random);
     let grain = grain(width, height, style.grain_sd.max(0.0), random);
     GrayImage::from_fn(width, height, |x, y| {
-        Luma([(canvas.tones.get_pixel(x, y).0[0] + grain.get_pixel(x, y).0[0]).round().clamp(0.0, 255.0) as u8])
+        Luma([
+            (canvas.tones.get_pixel(x, y).0[0] + grain.get_pixel(x, y).0[0]).round().clamp(0.0, 255.0) as u8
+        ])
     })
 }
 
@@ -130,7 +145,8 @@ pub(super) fn developed(plate: Canvas, layout: &Layout, style: &SpecimenStyle, r
 fn grain(width: u32, height: u32, sd: f64, random: &mut Random) -> Field {
     // A sum of four uniform numbers has a variance of four twelfths.
     let gain = sd * 3.0f64.sqrt();
-    let rough = Field::from_fn(width + 1, height + 1, |_, _| Luma([(gain * (random.uniform() - 0.5)) as f32]));
+    let rough =
+        Field::from_fn(width + 1, height + 1, |_, _| Luma([(gain * (random.uniform() - 0.5)) as f32]));
     Field::from_fn(width, height, |x, y| {
         let at = |dx: u32, dy: u32| rough.get_pixel(x + dx, y + dy).0[0];
         Luma([at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)])
@@ -148,7 +164,10 @@ fn scratch(canvas: &mut Canvas, layout: &Layout, style: &SpecimenStyle, random: 
             Shape::stroke(at, [at[0] + way[0], at[1] + way[1]], random.between(0.5, 1.1))
         } else {
             let radius = random.between(0.6, 2.0);
-            Shape::Capsule([(at, radius), ([at[0] + random.between(-2.0, 2.0), at[1] + random.between(-2.0, 2.0)], radius)])
+            Shape::Capsule([
+                (at, radius),
+                ([at[0] + random.between(-2.0, 2.0), at[1] + random.between(-2.0, 2.0)], radius),
+            ])
         };
         canvas.fill(&[shape], tone, random.between(0.3, 0.8));
     }

@@ -5,7 +5,6 @@ use muybridge_core::Random;
 
 use super::layout::{Layout, PRINT_PX};
 use super::paint::Canvas;
-use super::photograph::mottle;
 use super::raster::{Point, Shape, Window, add, between, scaled, sub};
 use super::style::{Mount, SpecimenStyle};
 use super::{NOTICE, SpecimenMotion};
@@ -19,12 +18,9 @@ const PALE_INK: f64 = 190.0;
 const CURVE_STEPS: usize = 5;
 
 /// The empty mount on its page.
-pub(super) fn mounted(layout: &Layout, style: &SpecimenStyle, random: &mut Random) -> Canvas {
+pub(super) fn mounted(layout: &Layout, style: &SpecimenStyle) -> Canvas {
     let [width, height] = layout.size_px;
     let mut plate = Canvas::new(Window { left: 0, top: 0, width, height }, SCANNER_TONE);
-    if width == 0 || height == 0 {
-        return plate;
-    }
     let page = &layout.page;
     let rectangle = |[left, top, right, bottom]: [f64; 4]| {
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
@@ -32,15 +28,17 @@ pub(super) fn mounted(layout: &Layout, style: &SpecimenStyle, random: &mut Rando
     };
     plate.fill(&[rectangle([0.0, 0.0, page.size[0], page.size[1]])], style.tones.page, 1.0);
     plate.fill(&[rectangle(page.mount)], style.tones.mount, 1.0);
-    let stains = mottle(width, height, [90.0, 90.0], random);
-    for (tone, stain) in plate.tones.pixels_mut().zip(stains.pixels()) {
-        tone.0[0] += 1.2 * stain.0[0];
-    }
     plate
 }
 
 /// Print, numbers and fold, over the mounted photographs.
-pub(super) fn ink(plate: &mut Canvas, layout: &Layout, motion: &SpecimenMotion, style: &SpecimenStyle, random: &mut Random) {
+pub(super) fn ink(
+    plate: &mut Canvas,
+    layout: &Layout,
+    motion: &SpecimenMotion,
+    style: &SpecimenStyle,
+    random: &mut Random,
+) {
     let page = &layout.page;
     let on_dark = style.mount == Mount::Dark && style.tones.page == style.tones.mount;
     let tone = if on_dark { PALE_INK } else { INK };
@@ -162,7 +160,10 @@ fn hand_written(number: u32, quad_px: &[Point; 4], style: &SpecimenStyle, random
         scaled(d, 1.0 / d[0].hypot(d[1]).max(f64::MIN_POSITIVE))
     };
     let (right, down) = (unit(quad_px[3], quad_px[2]), unit(quad_px[0], quad_px[3]));
-    let corner = add(quad_px[3], add(scaled(right, (0.4 + 0.6 * random.uniform()) * height), scaled(down, -1.35 * height)));
+    let corner = add(
+        quad_px[3],
+        add(scaled(right, (0.4 + 0.6 * random.uniform()) * height), scaled(down, -1.35 * height)),
+    );
     let slant = random.between(0.0, 0.35);
     let mut shapes = Vec::new();
     for (place, figure) in number.to_string().bytes().map(|byte| usize::from(byte - b'0')).enumerate() {
@@ -176,7 +177,10 @@ fn hand_written(number: u32, quad_px: &[Point; 4], style: &SpecimenStyle, random
             .collect();
         let pen = 0.045 * height;
         shapes.extend(points.windows(2).map(|two| {
-            Shape::Capsule([(two[0], pen * random.between(0.8, 1.6)), (two[1], pen * random.between(0.8, 1.6))])
+            Shape::Capsule([
+                (two[0], pen * random.between(0.8, 1.6)),
+                (two[1], pen * random.between(0.8, 1.6)),
+            ])
         }));
     }
     shapes
@@ -186,7 +190,8 @@ fn hand_written(number: u32, quad_px: &[Point; 4], style: &SpecimenStyle, random
 fn fold(plate: &mut Canvas, layout: &Layout, random: &mut Random) {
     let page = &layout.page;
     let from_middle = |x: &f64| (x - 0.5 * page.size[0]).abs();
-    let Some(x) = layout.gutters_x.iter().copied().min_by(|a, b| from_middle(a).total_cmp(&from_middle(b))) else {
+    let Some(x) = layout.gutters_x.iter().copied().min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)))
+    else {
         return;
     };
     let lean = random.between(-2.0, 2.0);

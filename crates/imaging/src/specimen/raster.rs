@@ -268,3 +268,56 @@ fn cut_to(mut left: Vec<Point>, size: Point) -> Vec<Point> {
     }
     left
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: Window = Window { left: 3, top: 5, width: 40, height: 30 };
+
+    fn area(shapes: &[Shape]) -> f64 {
+        Mask::of(shapes, ALL, 2.0).cover.iter().map(|cover| f64::from(*cover)).sum()
+    }
+
+    fn triangle() -> Vec<Point> {
+        vec![[10.3, 8.2], [31.7, 12.9], [17.1, 28.6]]
+    }
+
+    #[test]
+    fn a_polygon_covers_its_exact_area_whichever_way_it_turns() {
+        let [a, b, c] = [[10.3, 8.2], [31.7, 12.9], [17.1, 28.6]];
+        let ([ux, uy], [vx, vy]) = (sub(b, a), sub(c, a));
+        let exact = 0.5 * (ux * vy - uy * vx);
+        let backwards = triangle().into_iter().rev().collect();
+        assert!((area(&[Shape::polygon(triangle())]) - exact).abs() < 1e-3);
+        assert!((area(&[Shape::polygon(backwards)]) - exact).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_lies_outside_the_window_is_cut_off() {
+        let around = vec![[-90.0, -70.0], [200.0, -60.0], [190.0, 300.0], [-80.0, 250.0]];
+        assert!((area(&[Shape::polygon(around)]) - 1200.0).abs() < 1e-3);
+        let beside = vec![[100.0, 10.0], [120.0, 10.0], [110.0, 20.0]];
+        assert_eq!(area(&[Shape::polygon(beside)]), 0.0);
+    }
+
+    #[test]
+    fn an_inner_line_of_the_other_sense_is_a_hole() {
+        let square = |r: f64| {
+            vec![[20.0 - r, 20.0 - r], [20.0 + r, 20.0 - r], [20.0 + r, 20.0 + r], [20.0 - r, 20.0 + r]]
+        };
+        let hole = square(3.0).into_iter().rev().collect();
+        assert!((area(&[Shape::Outlines(vec![square(8.0), hole])]) - (256.0 - 36.0)).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_capsule_has_the_area_of_its_circles_and_tangents() {
+        let disc = Shape::Capsule([([20.2, 18.7], 6.0), ([20.2, 18.7], 6.0)]);
+        assert!((area(&[disc]) - 36.0 * std::f64::consts::PI).abs() < 1.0);
+        // Equal radii: a disc and a rectangle between its halves.
+        let rod = Shape::Capsule([([12.0, 20.0], 4.0), ([32.0, 20.0], 4.0)]);
+        assert!((area(&[rod]) - (16.0 * std::f64::consts::PI + 160.0)).abs() < 1.0);
+        let inside = Shape::Capsule([([20.0, 20.0], 6.0), ([21.0, 20.0], 2.0)]);
+        assert!((area(&[inside]) - 36.0 * std::f64::consts::PI).abs() < 1.0);
+    }
+}

@@ -75,6 +75,11 @@ impl Scene<'_> {
         camera.world_from_plate(at_px, -style.wall_distance_m)[1].max(0.1)
     }
 
+    /// Width of an upright, px.
+    fn upright_px(&self) -> f64 {
+        (self.style.upright_width_m * self.wall_scale()).max(1.0)
+    }
+
     /// How many lines of a spacing fit along a length in px on the wall.
     fn lines_along(&self, length_px: f64, spacing_m: f64) -> i32 {
         (length_px / self.wall_scale() / spacing_m).ceil().clamp(0.0, MOST_LINES) as i32
@@ -91,9 +96,11 @@ impl Scene<'_> {
                 let x_m = (mark - style.first_axis_mark) * style.upright_spacing_m;
                 let ends_px = self.panel.clip([self.wall(x_m, 0.0), self.wall(x_m, self.top_m())])?;
                 let [a, b] = ends_px;
-                // A stump in a corner is not seen as an upright.
+                // A stump in a corner, or one that runs into the mount, is not seen as an upright.
                 let height = sub(a, b)[0].hypot(sub(a, b)[1]);
-                (height > 0.5 * style.panel_px[1]).then_some(Upright { mark, ends_px })
+                let from_side_px = self.panel.side_distance_px(a).min(self.panel.side_distance_px(b));
+                let seen = height > 0.5 * style.panel_px[1] && from_side_px > 2.0 * self.upright_px() + 2.0;
+                seen.then_some(Upright { mark, ends_px })
             })
             .collect()
     }
@@ -149,9 +156,8 @@ impl Scene<'_> {
         for line in fine {
             canvas.fill(&[line], tones.grid, 0.75);
         }
-        let width_px = (style.upright_width_m * self.wall_scale()).max(1.0);
         for Upright { ends_px: [a, b], .. } in self.uprights() {
-            canvas.fill(&[Shape::stroke(a, b, width_px)], tones.uprights, 1.0);
+            canvas.fill(&[Shape::stroke(a, b, self.upright_px())], tones.uprights, 1.0);
         }
     }
 
@@ -185,7 +191,7 @@ impl Scene<'_> {
         let below = scaled(camera.up, -BEYOND_M * camera.px_per_m);
         let region = [Shape::polygon(vec![a, b, add(b, below), add(a, below)])];
         let mask = Mask::of(&region, canvas.window, 1.0);
-        let streaks = mottle(canvas.window.width, canvas.window.height, [14.0, 1.6], random);
+        let streaks = mottle(mask.window.width, mask.window.height, [14.0, 1.6], random);
         let tone = self.style.tones.ground;
         canvas.lay(&mask, |x, y| tone as f32 + 5.0 * streaks.get_pixel(x, y).0[0], 1.0);
         canvas.fill(&[Shape::stroke(a, b, 1.2)], 0.55 * tone, 0.8);
@@ -213,7 +219,9 @@ impl Scene<'_> {
         let scale = self.panel.camera.px_per_m;
         let [near, far] = [HURDLE_HALF_WIDTH_M, -HURDLE_HALF_WIDTH_M].map(|z| MIDDLE_Z_M + z);
         let mut shapes: Vec<Shape> = [near, far]
-            .map(|z| Shape::stroke(self.view.px([x_m, 0.0], z), self.view.px([x_m, height_m], z), 0.06 * scale))
+            .map(|z| {
+                Shape::stroke(self.view.px([x_m, 0.0], z), self.view.px([x_m, height_m], z), 0.06 * scale)
+            })
             .to_vec();
         shapes.extend([0.35, 0.65, 0.95].map(|share| {
             let y = share * height_m;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Metres in an inch.
 const INCH_M: f64 = 0.0254;
-/// Sides of a random plate lie near this, px.
+/// A random plate is about this wide at most, and little higher, px.
 const RANDOM_PLATE_PX: f64 = 1500.0;
 /// Least difference of tone between a random plate's wall and its mount: less is not seen on real plates either.
 const LEAST_EDGE: f64 = 45.0;
@@ -225,7 +225,7 @@ impl SpecimenStyle {
         let gutter = random.between(6.0, 36.0);
         let margin_px = random.between(10.0, 70.0);
         let width = (RANDOM_PLATE_PX - 2.0 * margin_px) / f64::from(columns) - gutter;
-        let width = width.min(520.0);
+        let width = width.min(520.0).min(RANDOM_PLATE_PX / f64::from(rows));
         let base = match (3.0 * random.uniform()) as u32 {
             0 => Self::default(),
             1 => Self::animal_locomotion(),

@@ -41,7 +41,8 @@ fn posed(horse: &Skeleton, phase: f64, facing: Facing) -> PosedHorse {
         swing(&mut pose, limb, phase + PHASES[limb.index()]);
     }
     pose.bends_rad[bone::NECK] += 0.04 * (2.0 * TAU * phase).sin() as f32;
-    let lowest = Limb::ALL.map(|limb| pose.joints(horse).toe(limb).y).into_iter().fold(f32::INFINITY, f32::min);
+    let lowest =
+        Limb::ALL.map(|limb| pose.joints(horse).toe(limb).y).into_iter().fold(f32::INFINITY, f32::min);
     pose.root_in_world.y -= lowest;
     seen(&pose.joints(horse), time_s, facing, horse)
 }
@@ -52,7 +53,9 @@ fn swing(pose: &mut Pose, limb: Limb, phase: f64) {
     // Bent while the leg comes forward.
     let bent = (-(TAU * phase).sin()).max(0.0) as f32;
     let turns: [f32; 5] = match limb.pair() {
-        Pair::Fore => [0.1 * forward, 0.35 * forward + 0.25 * bent, 0.1 * bent, -1.3 * bent, 0.3 - 0.9 * bent],
+        Pair::Fore => {
+            [0.1 * forward, 0.35 * forward + 0.25 * bent, 0.1 * bent, -1.3 * bent, 0.3 - 0.9 * bent]
+        }
         Pair::Hind => [0.0, 0.35 * forward + 0.35 * bent, -0.75 * bent, 0.75 * bent, 0.2 - 0.9 * bent],
     };
     for (i, turn) in turns.into_iter().enumerate() {
@@ -65,7 +68,8 @@ fn seen(joints: &Joints, time_s: f64, facing: Facing, horse: &Skeleton) -> Posed
     let near = facing.limb(NearOff::Near, Pair::Fore);
     let towards_camera = if near == Limb::RF { 1.0 } else { -1.0 };
     let hoof_plane = f64::from(horse.bones[near.hoof_bone()].lateral_m).abs();
-    let point = |[x, y, z]: [f32; 3]| [f64::from(x), f64::from(y), towards_camera * f64::from(z) - hoof_plane];
+    let point =
+        |[x, y, z]: [f32; 3]| [f64::from(x), f64::from(y), towards_camera * f64::from(z) - hoof_plane];
     let lowest = Limb::ALL.map(|limb| joints.toe(limb).y).into_iter().fold(f32::INFINITY, f32::min);
     PosedHorse {
         time_s,

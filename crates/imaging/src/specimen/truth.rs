@@ -1,8 +1,8 @@
 //! What is on a specimen: every joint, contact, panel and line.
 
 use muybridge_capture::{
-    BodyPoint, Facing, Keypoint, KeypointState, Keypoints, LegContacts, LimbJoint, NearOff, PanelCamera, Placed, PlacedBy,
-    StanceLabel,
+    BodyPoint, Facing, Keypoint, KeypointState, Keypoints, LegContacts, LimbJoint, NearOff, PanelCamera,
+    Placed, PlacedBy, StanceLabel,
 };
 use muybridge_core::{Gait, Pair};
 use serde::{Deserialize, Serialize};
@@ -15,13 +15,12 @@ use super::print::printed;
 use super::raster::Point;
 use super::scene::Scene;
 use super::style::SpecimenStyle;
-use super::{PosedHorse, SpecimenMotion};
+use super::{Hurdle, PosedHorse, SpecimenMotion};
 
 /// Schema version of a truth file.
 pub const SPECIMEN_SCHEMA: u32 = 1;
 /// Says what the picture is, in the file.
-const STATEMENT: &str =
-    "This plate is a drawing made by a program from a known motion, for tests and lessons. It is not a photograph.";
+const STATEMENT: &str = "This plate is a drawing made by a program from a known motion, for tests and lessons. It is not a photograph.";
 
 /// The truth of a specimen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,6 +46,9 @@ pub struct SpecimenTruth {
     pub closes_after_panels: Option<f64>,
     /// Distance between neighbouring cameras, m.
     pub camera_spacing_m: f64,
+    /// The obstacle of a leap.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hurdle: Option<Hurdle>,
     /// How the plate was drawn.
     pub style: SpecimenStyle,
     /// The panels in order of time.
@@ -102,7 +104,12 @@ struct CameraNumbers {
 }
 
 impl SpecimenTruth {
-    pub(super) fn new(layout: &Layout, motion: &SpecimenMotion, style: &SpecimenStyle, panels: Vec<PanelTruth>) -> Self {
+    pub(super) fn new(
+        layout: &Layout,
+        motion: &SpecimenMotion,
+        style: &SpecimenStyle,
+        panels: Vec<PanelTruth>,
+    ) -> Self {
         Self {
             schema: SPECIMEN_SCHEMA,
             statement: STATEMENT.to_string(),
@@ -114,6 +121,7 @@ impl SpecimenTruth {
             speed_m_s: motion.speed_m_s,
             closes_after_panels: motion.closes_after_panels,
             camera_spacing_m: layout.camera_spacing_m,
+            hurdle: motion.hurdle.map(|hurdle| Hurdle { x_m: hurdle.x_m - layout.origin_x_m, ..hurdle }),
             style: style.clone(),
             panels,
         }
@@ -145,7 +153,9 @@ pub(super) fn panel_truth(
         contacts: contacts(pose, motion.facing),
         ground_px: line(ground_line(panel)),
         wall_foot_px: scene.level(0.0).map(line),
-        uprights: uprights.map(|upright| UprightTruth { mark: upright.mark, ends_px: line(upright.ends_px) }).collect(),
+        uprights: uprights
+            .map(|upright| UprightTruth { mark: upright.mark, ends_px: line(upright.ends_px) })
+            .collect(),
         grid_lines_px: scene.grid_lines().into_iter().map(line).collect(),
         keypoints,
     }
@@ -168,7 +178,9 @@ fn place(keypoint: Keypoint, pose: &PosedHorse, facing: Facing) -> [f64; 3] {
 /// The layer a keypoint lies on. Hip and shoulder of the near side lie on the trunk.
 fn part(keypoint: Keypoint) -> Part {
     match keypoint {
-        Keypoint::Body(_) | Keypoint::Limb(NearOff::Near, _, LimbJoint::Root | LimbJoint::Upper) => Part::NearFore,
+        Keypoint::Body(_) | Keypoint::Limb(NearOff::Near, _, LimbJoint::Root | LimbJoint::Upper) => {
+            Part::NearFore
+        }
         Keypoint::Limb(NearOff::Near, Pair::Fore, _) => Part::NearFore,
         Keypoint::Limb(NearOff::Near, Pair::Hind, _) => Part::NearHind,
         Keypoint::Limb(NearOff::Off, Pair::Fore, _) => Part::OffFore,

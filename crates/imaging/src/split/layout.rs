@@ -1,50 +1,55 @@
 //! Rows, columns and rough edges of the panels, from a mask of the mount.
 
-use super::fold::Fold;
+use super::agree::agree;
 use super::mask::{Along, Mask, Rectangle};
+use super::median;
 use super::spans::{Span, common_size, panels, runs};
 
 /// Least share of a panel's cell that is not mount; a line of a caption is mostly mount.
 const LEAST_CONTENT: f64 = 0.3;
-/// Relative departure from the usual size (or of an edge from its neighbours', in sizes) up to which a panel is left as it is.
-const USUAL: f64 = 0.07;
+/// Least share of mount where a panel is missing at the end of the last row.
+const BLANK: f64 = 0.9;
+/// Share of mount along an edge at which the mount outside it ends.
+const MOUNT_ENDS: f64 = 0.5;
+/// Most of the way from an edge to its neighbour that other panels of the same row or column may take up.
+const MOST_NEAR: f64 = 0.7;
+/// Power of the number of panels with which a layout is worth more: thin gutters are more easily missed than imagined.
+const MORE_PANELS: f64 = 0.5;
 
-/// One panel, roughly: pixels of the turned mask.
+/// One panel, roughly: pixels of the turned mask. Sides are in the order left, top, right, bottom.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
     pub(super) row: usize,
     pub(super) column: usize,
-    /// Left, top, right, bottom.
     pub(super) edges: [f64; 4],
-    /// Which of them were not seen in the mask but taken from other panels.
-    pub(super) inferred: [bool; 4],
+    /// Where the mount outside each edge ends.
+    mount_ends: [f64; 4],
 }
 
 impl Cell {
-    fn size(&self, axis: usize) -> f64 {
+    /// Width (axis 0) or height (axis 1).
+    pub(super) fn size(&self, axis: usize) -> f64 {
         self.edges[axis + 2] - self.edges[axis]
     }
 
     /// Length that two cells have in common along an axis; negative when they are apart.
-    fn overlap(&self, other: &Self, axis: usize) -> f64 {
+    pub(super) fn overlap(&self, other: &Self, axis: usize) -> f64 {
         self.edges[axis + 2].min(other.edges[axis + 2]) - self.edges[axis].max(other.edges[axis])
     }
 
     /// Whether left and right edges (axis 0) or top and bottom edges (axis 1) of both should be in line.
-    fn is_mate(&self, other: &Self, axis: usize) -> bool {
+    pub(super) fn is_mate(&self, other: &Self, axis: usize) -> bool {
         let is_in_line = axis == 0 || self.row == other.row;
         is_in_line && self.overlap(other, axis) > 0.5 * self.size(axis).min(other.size(axis))
     }
 
     /// Where there is only mount outside each edge: nearest and farthest, px from the edge outwards.
-    pub(super) fn mount_outside(&self, layout: &Layout) -> [[f64; 2]; 4] {
+    pub(super) fn mount_outside(&self, cells: &[Self]) -> [[f64; 2]; 4] {
         std::array::from_fn(|side| {
             let (axis, outwards) = (side % 2, if side < 2 { -1.0 } else { 1.0 });
-            let edge = self.edges[side];
-            let beyond = |value: f64| outwards * (value - edge);
-            let mut near = 0.0f64;
-            let mut far = beyond(layout.region[side] as f64);
-            for other in &layout.cells {
+            let beyond = |value: f64| outwards * (value - self.edges[side]);
+            let (mut near, mut far) = (0.0f64, beyond(self.mount_ends[side]));
+            for other in cells {
                 let middle = 0.5 * (other.edges[axis] + other.edges[axis + 2]);
                 if self.is_mate(other, axis) {
                     near = near.max(beyond(other.edges[side]));
@@ -52,8 +57,7 @@ impl Cell {
                     far = far.min(beyond(other.edges[(side + 2) % 4]));
                 }
             }
-            let far = far.max(0.0);
-            [if near < 0.7 * far { near } else { 0.0 }, far]
+            [if near < MOST_NEAR * far { near } else { 0.0 }, far.max(0.0)]
         })
     }
 }
@@ -62,17 +66,17 @@ impl Cell {
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub(super) cells: Vec<Cell>,
-    /// Folds of the page.
-    pub(super) folds: Vec<Fold>,
     /// Where the mount is.
     pub(super) region: Rectangle,
-    /// How well the mount explains what is not panel, 0..1: for choosing among masks.
+    /// How well the mount explains what is not panel: larger is better, 0 for less than two panels.
     pub(super) worth: f64,
+    /// Whether the rows have equally many panels, but for blank mount at the end of the last.
+    pub(super) is_full: bool,
 }
 
 /// Finds the panels in a region of mount; none when there is nothing like one.
 pub(super) fn find(mask: &Mask, region: Rectangle) -> Option<Layout> {
-    let [left, top, right, bottom] = region;
+    let [left, top, right, _] = region;
     let row_runs = runs(&mask.line_shares(Along::Rows, region));
     let height = common_size(std::slice::from_ref(&row_runs))?;
     let bands: Vec<Rectangle> = panels(&row_runs, height)
@@ -83,115 +87,93 @@ pub(super) fn find(mask: &Mask, region: Rectangle) -> Option<Layout> {
     let column_runs: Vec<Vec<Span>> =
         bands.iter().map(|band| runs(&mask.line_shares(Along::Columns, *band))).collect();
     let width = common_size(&column_runs)?;
+    if std::env::var("SPLIT_DEBUG").is_ok() { eprintln!("{height} {bands:?} {width} {column_runs:?}"); for b in &bands { let s = mask.line_shares(Along::Columns, *b); eprintln!("{:?}", s.iter().enumerate().filter(|v| *v.1 > 0.5).map(|(i, v)| (i, (v * 100.0) as u8)).collect::<Vec<_>>()); } }
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     for (band, runs) in bands.iter().zip(&column_runs) {
-        let cells: Vec<Cell> = panels(runs, width)
-            .iter()
-            .filter_map(|span| trimmed(mask, [left + span.start, band[1], left + span.end, band[3]], height))
-            .collect();
+        let mut cells: Vec<Cell> = Vec::new();
+        for span in panels(runs, width) {
+            let box_px = trimmed(mask, [left + span.start, band[1], left + span.end, band[3]], height);
+            let mount_ends = |edges| std::array::from_fn(|side| mount_end(mask, region, edges, side) as f64);
+            cells.extend(box_px.map(|edges| Cell {
+                row: rows.len(),
+                column: cells.len(),
+                edges: edges.map(|edge| edge as f64),
+                mount_ends: mount_ends(edges),
+            }));
+        }
         if !cells.is_empty() {
             rows.push(cells);
         }
     }
-    let worth = worth(mask, region, &rows);
-    for (row, cells) in rows.iter_mut().enumerate() {
-        for (column, cell) in cells.iter_mut().enumerate() {
-            (cell.row, cell.column) = (row, column);
-        }
+    let (mut cells, is_full) = (rows.concat(), is_full(mask, region, &rows));
+    let worth = worth(mask, region, &cells);
+    for axis in 0..2 {
+        agree(&mut cells, region, axis, None);
     }
-    let mut cells = rows.concat();
-    agree(&mut cells, region, 0, USUAL);
-    agree(&mut cells, region, 1, USUAL);
-    (!cells.is_empty()).then_some(Layout { cells, folds: Vec::new(), region, worth })
+    (!cells.is_empty()).then_some(Layout { cells, region, worth, is_full })
 }
 
 /// A cell without the mount above and below its photograph; none when it is mostly mount.
-fn trimmed(mask: &Mask, [left, top, right, bottom]: Rectangle, height: f64) -> Option<Cell> {
+fn trimmed(mask: &Mask, [left, top, right, bottom]: Rectangle, height: f64) -> Option<Rectangle> {
     let rows = runs(&mask.line_shares(Along::Rows, [left, top, right, bottom]));
-    let tallest =
-        panels(&rows, height).into_iter().max_by(|a, b| a.length().total_cmp(&b.length()));
-    let (start, end) = match (tallest, rows.first(), rows.last()) {
-        (Some(span), ..) => (top + span.start, top + span.end),
-        (None, Some(first), Some(last)) => (top + first.start, top + last.end),
-        _ => return None,
+    let tallest = panels(&rows, height).into_iter().max_by(|a, b| a.length().total_cmp(&b.length()));
+    let (start, end) = match tallest {
+        Some(span) => (span.start, span.end),
+        None => (rows.first()?.start, rows.last()?.end),
     };
-    let edges = [left, start, right, end].map(|v| v as f64);
-    (1.0 - mask.share([left, start, right, end]) >= LEAST_CONTENT).then_some(Cell {
-        row: 0,
-        column: 0,
-        edges,
-        inferred: [false; 4],
+    let edges = [left, top + start, right, top + end];
+    (1.0 - mask.share(edges) >= LEAST_CONTENT).then_some(edges)
+}
+
+/// How far the mount reaches outwards from an edge of a cell: to the region's border, or to where most of a line along the
+/// edge is something else.
+fn mount_end(mask: &Mask, region: Rectangle, cell: Rectangle, side: usize) -> usize {
+    let axis = side % 2;
+    let is_mount = |at: usize| {
+        let mut line = cell;
+        (line[axis], line[axis + 2]) = (at, at + 1);
+        mask.share(line) >= MOUNT_ENDS
+    };
+    // Outwards, the line before the edge first.
+    let mut lines: Box<dyn Iterator<Item = usize>> =
+        if side < 2 { Box::new((region[side]..cell[side]).rev()) } else { Box::new(cell[side]..region[side]) };
+    let Some(first) = lines.by_ref().find(|at| is_mount(*at)) else { return region[side] };
+    let last = lines.take_while(|at| is_mount(*at)).last().unwrap_or(first);
+    if side < 2 { last } else { last + 1 }
+}
+
+/// Whether the rows have equally many panels, but for blank mount at the end of the last.
+fn is_full(mask: &Mask, region: Rectangle, rows: &[Vec<Cell>]) -> bool {
+    let Some(fullest) = rows.iter().max_by_key(|row| row.len()) else { return false };
+    rows.iter().enumerate().all(|(i, row)| {
+        let (Some(first), Some(last), Some(outer)) = (row.first(), row.last(), fullest.last()) else { return false };
+        let missing = [last.edges[2], last.edges[1], outer.edges[2], last.edges[3]];
+        let missing = missing.map(|edge| edge.max(0.0) as usize);
+        let is_blank = missing[2] <= region[2] && mask.share(missing) >= BLANK;
+        row.len() == fullest.len() || (i + 1 == rows.len() && first.is_mate(&fullest[0], 0) && is_blank)
     })
 }
 
 /// Share of the region in panels, times share of mount in the rest, less where panels are of unlike sizes.
-fn worth(mask: &Mask, region: Rectangle, rows: &[Vec<Cell>]) -> f64 {
-    let cells: Vec<&Cell> = rows.iter().flatten().collect();
+fn worth(mask: &Mask, region: Rectangle, cells: &[Cell]) -> f64 {
     let area = |[left, top, right, bottom]: Rectangle| ((right - left) * (bottom - top)) as f64;
-    let whole = area(region);
     let (mut covered, mut mount_inside) = (0.0, 0.0);
-    for cell in &cells {
-        let rectangle = cell.edges.map(|v| v as usize);
+    for cell in cells {
+        let rectangle = cell.edges.map(|edge| edge as usize);
         covered += area(rectangle);
         mount_inside += mask.share(rectangle) * area(rectangle);
     }
+    let whole = area(region);
     let rest = whole - covered;
     if rest <= 0.0 || cells.len() < 2 {
         return 0.0;
     }
     let purity = (mask.share(region) * whole - mount_inside) / rest;
-    let unlike: f64 = (0..2)
-        .map(|axis| {
-            let usual = median(cells.iter().map(|cell| cell.size(axis)).collect());
-            cells.iter().map(|cell| (cell.size(axis) / usual - 1.0).abs().min(1.0)).sum::<f64>()
-                / cells.len() as f64
-        })
-        .sum();
-    let share = whole / (mask.size[0] * mask.size[1]) as f64;
-    covered / whole * purity * (1.0 - unlike).max(0.0) * share.sqrt() * (cells.len() as f64).powf(0.25)
-}
-
-/// Middle value; the upper one of two; zero of none.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// Edges of panels of unusual width (axis 0) or height (axis 1) are put where those of their column or row are.
-pub(super) fn agree(cells: &mut [Cell], region: Rectangle, axis: usize, tolerance: f64) {
-    let usual = median(cells.iter().map(|cell| cell.size(axis)).collect());
-    let is_usual = |cell: &Cell| (cell.size(axis) / usual - 1.0).abs() <= tolerance;
-    let before = cells.to_vec();
-    for cell in cells.iter_mut().filter(|cell| !is_usual(cell)) {
-        let mates: Vec<&Cell> =
-            before.iter().filter(|mate| is_usual(mate) && cell.is_mate(mate, axis)).collect();
-        let expected = if mates.is_empty() {
-            grown(cell, &before, region, axis, usual)
-        } else {
-            [axis, axis + 2].map(|side| median(mates.iter().map(|mate| mate.edges[side]).collect()))
-        };
-        for (side, value) in [axis, axis + 2].into_iter().zip(expected) {
-            if (cell.edges[side] - value).abs() > 0.75 * tolerance * usual {
-                cell.edges[side] = value;
-                cell.inferred[side] = true;
-            }
-        }
-    }
-}
-
-/// A panel of the usual size that keeps the edge on whose other side there is less room.
-fn grown(cell: &Cell, cells: &[Cell], region: Rectangle, axis: usize, usual: f64) -> [f64; 2] {
-    let [low, high] = [cell.edges[axis], cell.edges[axis + 2]];
-    let across = 1 - axis;
-    let abreast = cells.iter().filter(|other| cell.overlap(other, across) > 0.0);
-    let (mut before, mut behind) = (region[axis] as f64, region[axis + 2] as f64);
-    for other in abreast {
-        let [start, end] = [other.edges[axis], other.edges[axis + 2]];
-        if 0.5 * (start + end) < low {
-            before = before.max(end);
-        } else if 0.5 * (start + end) > high {
-            behind = behind.min(start);
-        }
-    }
-    if low - before > behind - high { [high - usual, high] } else { [low, low + usual] }
+    let unlike = |axis: usize| {
+        let usual = median(cells.iter().map(|cell| cell.size(axis)).collect());
+        cells.iter().map(|cell| (cell.size(axis) / usual - 1.0).abs().min(1.0)).sum::<f64>() / cells.len() as f64
+    };
+    let alike = (1.0 - unlike(0) - unlike(1)).max(0.0);
+    let more = (cells.len() as f64).powf(MORE_PANELS);
+    covered / whole * purity * alike * (whole / mask.area()).sqrt() * more
 }

@@ -4,10 +4,33 @@ use image::GrayImage;
 use imageproc::stats::histogram;
 
 /// Grey values of a mount, from the darkest to the lightest, both included.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tones {
     pub(super) darkest: u8,
     pub(super) lightest: u8,
+    /// Median of the pixels within.
+    pub(super) usual: f64,
+}
+
+/// How far a mount's tone may lie outside its range where grain was not averaged away, grey values.
+const GRAIN: f64 = 12.0;
+
+impl Tones {
+    /// Whether a grey value may be the mount's.
+    pub(super) fn has(&self, tone: f64) -> bool {
+        (f64::from(self.darkest) - GRAIN..=f64::from(self.lightest) + GRAIN).contains(&tone)
+    }
+
+    fn new(counts: &[f64], darkest: usize, lightest: usize) -> Self {
+        let (darkest, lightest) = (darkest.min(255), lightest.min(255));
+        let half = 0.5 * counts[darkest..=lightest.max(darkest)].iter().sum::<f64>();
+        let mut below = 0.0;
+        let usual = (darkest..lightest).find(|v| {
+            below += counts[*v];
+            below >= half
+        });
+        Self { darkest: darkest as u8, lightest: lightest as u8, usual: usual.unwrap_or(lightest) as f64 }
+    }
 }
 
 /// Least and most of a picture that can be mount.
@@ -30,7 +53,7 @@ pub(super) fn candidates(picture: &GrayImage) -> Vec<Tones> {
         ((middle + high) / 2 + 1, 255),
         (high + 1, 255),
     ];
-    let ends = ends.map(|(from, to)| Tones { darkest: from.min(255) as u8, lightest: to as u8 });
+    let ends = ends.map(|(from, to)| Tones::new(&counts, from, to));
     let mut found: Vec<Tones> = Vec::new();
     for tones in ends.into_iter().chain(peaks(&counts)) {
         let share = counts[tones.darkest as usize..=tones.lightest as usize].iter().sum::<f64>() / total;
@@ -86,7 +109,7 @@ fn peaks(counts: &[f64]) -> Vec<Tones> {
         let darkest = (0..v).rev().find(|u| smooth[*u] < foot).map_or(0, |u| u + 1);
         let lightest = (v..256).find(|u| smooth[*u] < foot).map_or(255, |u| u - 1);
         if counts[darkest..=lightest].iter().sum::<f64>() >= PEAK_SHARE * total {
-            found.push(Tones { darkest: darkest as u8, lightest: lightest as u8 });
+            found.push(Tones::new(counts, darkest, lightest));
         }
     }
     found

@@ -8,7 +8,7 @@ pub(super) fn climb(
     score: impl Fn(&[f64]) -> f64,
 ) -> f64 {
     /// Rounds at one step length; the score is bounded, so that a longer climb gains little.
-    const ROUNDS: usize = 8;
+    const ROUNDS: usize = 3;
     let mut best = score(unknowns);
     for halving in 0..=halvings {
         let factor = 0.5f64.powi(halving as i32);

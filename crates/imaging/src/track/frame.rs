@@ -6,39 +6,55 @@ use imageproc::filter::gaussian_blur_f32;
 
 use crate::PanelView;
 
-/// A place or direction in *body heights*: panel px over the animal's height at the withers in panel px, x towards the
-/// side the animal faces, y down.
+/// A place or a step in *body heights*: panel px over the animal's height at the withers in panel px, x towards the side
+/// the animal faces, y down.
 pub(super) type Place = [f64; 2];
 
-/// Resolution of the search, px per body height: a cannon is 11 px long, a pastern with its hoof 8.
-const COARSE_PX: f64 = 64.0;
-/// Most resolution of the refinement, px per body height: 2 % of the height are 4 px.
-const FINE_PX: f64 = 200.0;
-/// Blur of either resolution, px: less than a limb's width, more than the grain.
+/// Resolution of the search, px per body height: a cannon is 14 px long, pastern and hoof together 10.
+const COARSE_PX: f64 = 78.0;
+/// Most resolution of the refinement, px per body height: 2 % of the height are 5 px.
+const FINE_PX: f64 = 240.0;
+/// Blur at either resolution, px: less than a limb's width, more than the grain.
 const BLUR_PX: f32 = 0.8;
+
+/// How far two places are from each other.
+pub(super) fn distance(a: Place, b: Place) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The step from one place to another.
+pub(super) fn step(from: Place, to: Place) -> Place {
+    [to[0] - from[0], to[1] - from[1]]
+}
 
 /// Pixels of a panel at one resolution.
 pub(super) struct Level {
-    /// Resolution, px per body height.
+    /// Resolution.
     pub(super) px_per_height: f64,
     /// The photograph, and the silhouette where there is one.
     pub(super) layers: Vec<GrayImage>,
+    size_px: [i32; 2],
 }
 
 impl Level {
     fn new(pictures: &[&GrayImage], native_px: f64, most_px: f64, mirrored: bool) -> Self {
         let factor = (most_px / native_px).min(1.0);
+        let size = |length: u32| ((f64::from(length) * factor).round() as u32).max(1);
+        let size_px = [size(pictures[0].width()), size(pictures[0].height())];
         let layers = pictures.iter().map(|picture| {
-            let size = |length: u32| ((f64::from(length) * factor).round() as u32).max(1);
-            let small = resize(*picture, size(picture.width()), size(picture.height()), FilterType::Triangle);
+            let small = resize(*picture, size_px[0], size_px[1], FilterType::Triangle);
             gaussian_blur_f32(&if mirrored { flip_horizontal(&small) } else { small }, BLUR_PX)
         });
-        Self { px_per_height: native_px * factor, layers: layers.collect() }
+        Self {
+            px_per_height: native_px * factor,
+            layers: layers.collect(),
+            size_px: size_px.map(|length| length as i32),
+        }
     }
 
     /// Width and height, px.
-    pub(super) fn size(&self) -> [i32; 2] {
-        [self.layers[0].width() as i32, self.layers[0].height() as i32]
+    pub(super) fn size_px(&self) -> [i32; 2] {
+        self.size_px
     }
 
     /// The centre of a pixel.
@@ -65,8 +81,8 @@ pub(super) struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// `height_plate_px` is the animal's height in plate px; `mirrored` is for an animal that faces left. A silhouette
-    /// of another size than the view's is left out.
+    /// `height_plate_px` is the animal's height in plate px; `mirrored` is for an animal that faces left. A silhouette of
+    /// another size than the view's is left out.
     pub(super) fn new(
         view: &'a PanelView,
         silhouette: Option<&GrayImage>,
@@ -83,14 +99,15 @@ impl<'a> Frame<'a> {
     /// A plate point in body heights.
     pub(super) fn place(&self, at_px: [f64; 2]) -> Place {
         let [x, y] = self.view.transform.panel_from_plate(at_px);
-        let x = if self.mirrored { f64::from(self.view.image.width()) - x } else { x };
-        [x / self.native_px, y / self.native_px]
+        [self.turned(x) / self.native_px, y / self.native_px]
     }
 
     /// A place in plate px.
     pub(super) fn plate_px(&self, [x, y]: Place) -> [f64; 2] {
-        let [x, y] = [x * self.native_px, y * self.native_px];
-        let x = if self.mirrored { f64::from(self.view.image.width()) - x } else { x };
-        self.view.transform.plate_from_panel([x, y])
+        self.view.transform.plate_from_panel([self.turned(x * self.native_px), y * self.native_px])
+    }
+
+    fn turned(&self, x: f64) -> f64 {
+        if self.mirrored { f64::from(self.view.image.width()) - x } else { x }
     }
 }

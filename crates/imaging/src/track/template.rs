@@ -1,38 +1,14 @@
 //! What a segment looks like, and how alike a picture is at another place and angle.
 
+use image::GrayImage;
+
+use super::figure::Segment;
 use super::frame::{Level, Place};
 
 /// Grain: variance of grey values that carries no likeness, grey levels squared.
 const GRAIN_VARIANCE: f32 = 36.0;
 /// Weight of a sample that shows another limb.
 const FOREIGN_WEIGHT: f32 = 0.1;
-
-/// A segment in a picture, from its proximal to its distal end.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Segment {
-    pub(super) from: Place,
-    pub(super) to: Place,
-}
-
-impl Segment {
-    /// Direction, radians, clockwise from facing as seen.
-    pub(super) fn angle(&self) -> f64 {
-        (self.to[1] - self.from[1]).atan2(self.to[0] - self.from[0])
-    }
-
-    pub(super) fn length(&self) -> f64 {
-        (self.to[0] - self.from[0]).hypot(self.to[1] - self.from[1])
-    }
-
-    /// Distance of a point from the segment.
-    pub(super) fn distance(&self, [x, y]: Place) -> f64 {
-        let ([ax, ay], [bx, by]) = (self.from, self.to);
-        let (dx, dy) = (bx - ax, by - ay);
-        let along = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy).max(f64::MIN_POSITIVE);
-        let t = along.clamp(0.0, 1.0);
-        (x - ax - t * dx).hypot(y - ay - t * dy)
-    }
-}
 
 /// Which part of the picture around a segment is compared.
 #[derive(Clone, Copy, Debug)]
@@ -76,9 +52,8 @@ impl Template {
         let total: f32 = weights.iter().sum();
         weights.iter_mut().for_each(|weight| *weight /= total);
         let mut template = Self { at, weights, layers: Vec::new() };
-        let stamp = template.stamp(segment.angle());
         for layer in 0..level.layers.len() {
-            let values = template.values(level, layer, &stamp, segment.to);
+            let values: Vec<f32> = template.values(level, layer, segment.to, segment.angle()).collect();
             template.layers.push(template.standard(&values));
         }
         template
@@ -92,43 +67,46 @@ impl Template {
     }
 
     /// The samples' offsets from the distal end at an angle, px.
-    pub(super) fn stamp(&self, angle: f64) -> Vec<[f32; 2]> {
+    fn stamp(&self, angle: f64) -> impl Iterator<Item = [f32; 2]> {
         let (sin, cos) = (angle.sin() as f32, angle.cos() as f32);
-        self.at.iter().map(|[along, across]| [along * cos - across * sin, along * sin + across * cos]).collect()
+        self.at.iter().map(move |[along, across]| [along * cos - across * sin, along * sin + across * cos])
     }
 
-    /// [`Self::stamp`] in whole pixels.
+    /// The same in whole pixels.
     pub(super) fn offsets(&self, angle: f64) -> Vec<[i32; 2]> {
-        self.stamp(angle).into_iter().map(|offset| offset.map(|v| v.round() as i32)).collect()
+        self.stamp(angle).map(|offset| offset.map(|v| v.round() as i32)).collect()
     }
 
-    fn values(&self, level: &Level, layer: usize, stamp: &[[f32; 2]], [x, y]: Place) -> Vec<f32> {
+    fn values(&self, level: &Level, layer: usize, [x, y]: Place, angle: f64) -> impl Iterator<Item = f32> {
         let centre = [(x * level.px_per_height) as f32 - 0.5, (y * level.px_per_height) as f32 - 0.5];
-        stamp.iter().map(|[dx, dy]| between(level, layer, [centre[0] + dx, centre[1] + dy])).collect()
+        self.stamp(angle).map(move |[dx, dy]| between(&level.layers[layer], [centre[0] + dx, centre[1] + dy]))
     }
 
-    /// Likeness in -1..1 of each layer at a place and angle, between pixels.
-    pub(super) fn likeness(&self, level: &Level, place: Place, angle: f64) -> Vec<f32> {
-        let stamp = self.stamp(angle);
-        let layers = self.layers.len().min(level.layers.len());
-        (0..layers)
-            .map(|layer| {
-                let values = self.values(level, layer, &stamp, place);
-                self.correlation(layer, values.iter().copied())
-            })
-            .collect()
+    /// Likeness in -1..1 at a place and angle, between pixels.
+    pub(super) fn likeness(&self, level: &Level, place: Place, angle: f64) -> f64 {
+        let layers = self.layers_in_common(level);
+        let of = |layer| self.correlation(layer, self.values(level, layer, place, angle));
+        f64::from((0..layers).map(of).sum::<f32>()) / layers as f64
     }
 
-    /// Likeness of one layer, at a whole pixel, with offsets rounded to whole pixels.
-    pub(super) fn likeness_at_pixel(&self, level: &Level, layer: usize, offsets: &[[i32; 2]], [x, y]: [i32; 2]) -> f32 {
-        let picture = &level.layers[layer];
-        let (width, raw) = (picture.width() as i32, picture.as_raw());
-        let height = picture.height() as i32;
-        let values = offsets.iter().map(|[dx, dy]| {
-            let (column, row) = ((x + dx).clamp(0, width - 1), (y + dy).clamp(0, height - 1));
-            f32::from(raw[(row * width + column) as usize])
-        });
-        self.correlation(layer, values)
+    /// Likeness in -1..1 at a whole pixel, with the samples' offsets from [`Self::offsets`].
+    pub(super) fn likeness_at_pixel(&self, level: &Level, offsets: &[[i32; 2]], [x, y]: [i32; 2]) -> f32 {
+        let [width, height] = level.size_px();
+        let layers = self.layers_in_common(level);
+        let of = |layer: usize| {
+            let raw = level.layers[layer].as_raw();
+            let values = offsets.iter().map(|[dx, dy]| {
+                let (column, row) = ((x + dx).clamp(0, width - 1), (y + dy).clamp(0, height - 1));
+                f32::from(raw[(row * width + column) as usize])
+            });
+            self.correlation(layer, values)
+        };
+        (0..layers).map(of).sum::<f32>() / layers as f32
+    }
+
+    /// The photograph is in both; the silhouette may not be.
+    fn layers_in_common(&self, level: &Level) -> usize {
+        self.layers.len().min(level.layers.len())
     }
 
     fn correlation(&self, layer: usize, values: impl Iterator<Item = f32>) -> f32 {
@@ -140,16 +118,10 @@ impl Template {
         }
         product / ((square - sum * sum).max(0.0) + GRAIN_VARIANCE).sqrt()
     }
-
-    /// Layers that template and picture have in common.
-    pub(super) fn layers(&self, level: &Level) -> usize {
-        self.layers.len().min(level.layers.len())
-    }
 }
 
 /// Value between four pixels; beyond the border the nearest pixel's.
-fn between(level: &Level, layer: usize, [x, y]: [f32; 2]) -> f32 {
-    let picture = &level.layers[layer];
+fn between(picture: &GrayImage, [x, y]: [f32; 2]) -> f32 {
     let (width, height, raw) = (picture.width() as usize, picture.height() as usize, picture.as_raw());
     let (x, y) = (x.clamp(0.0, (width - 1) as f32), y.clamp(0.0, (height - 1) as f32));
     let (x0, y0) = (x as usize, y as usize);

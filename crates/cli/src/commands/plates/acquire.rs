@@ -20,7 +20,7 @@ use super::{CATALOGUE, gait};
 
 /// Arguments of `fetch`.
 #[derive(Debug, Args)]
-pub(super) struct FetchArguments {
+pub(in crate::commands) struct FetchArguments {
     /// Numbers of the catalogue, such as 616.
     #[arg(required = true)]
     numbers: Vec<u32>,
@@ -42,7 +42,7 @@ pub(super) struct FetchArguments {
 
 /// Arguments of `add`.
 #[derive(Debug, Args)]
-pub(super) struct AddArguments {
+pub(in crate::commands) struct AddArguments {
     /// A scan of a plate, or a folder of frames.
     file: PathBuf,
     /// Gait of the title.

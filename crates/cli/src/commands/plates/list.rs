@@ -12,7 +12,7 @@ use super::{CATALOGUE, gait};
 
 /// Arguments of `list`.
 #[derive(Debug, Args)]
-pub(super) struct ListArguments {
+pub(in crate::commands) struct ListArguments {
     /// Only plates titled with this gait: walk, amble, trot, rack, canter, gallop or leap.
     #[arg(long, value_parser = gait)]
     gait: Option<Gait>,

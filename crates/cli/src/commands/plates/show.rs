@@ -50,7 +50,7 @@ enum Layer {
 
 /// Arguments of `show`.
 #[derive(Debug, Args)]
-pub(super) struct ShowArguments {
+pub(in crate::commands) struct ShowArguments {
     /// A catalogue number, identifier, manifest, picture or folder of frames.
     plate: String,
     /// What to draw (default: all but tracks).
@@ -129,7 +129,8 @@ fn see(panels: Vec<Panel>, pictures: &[GrayImage]) -> anyhow::Result<Seen> {
         views.push(view.with_context(|| format!("panel {}: its corners enclose no area", panel.panel))?);
     }
     let tracks = vec![Vec::new(); panels.len()];
-    Ok(Seen { silhouettes: silhouettes(&views), walls: walls(&views), tracks, panels, views })
+    let found = silhouettes(&views);
+    Ok(Seen { walls: walls(&views, &found), silhouettes: found, tracks, panels, views })
 }
 
 /// Points of each panel tracked from the annotated panels before it.

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use image::GrayImage;
 use muybridge_capture::{Manifest, Panel, hash_file, locate_image};
-use muybridge_imaging::split::{split};
-type Doubt = String;
+use muybridge_imaging::split::{Doubt, split};
 use muybridge_imaging::{LoadLimits, frames, load_gray};
 
 /// Folders in which an identifier is looked up.

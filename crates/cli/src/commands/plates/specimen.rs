@@ -13,7 +13,7 @@ use crate::specimens::{KEPT_SEED, PANELS, motion, style};
 
 /// Arguments of `specimen`.
 #[derive(Debug, Args)]
-pub(super) struct SpecimenArguments {
+pub(in crate::commands) struct SpecimenArguments {
     /// Gaits: walk, amble, trot, rack, canter, gallop, leap (default: all).
     #[arg(value_parser = gait)]
     gaits: Vec<Gait>,

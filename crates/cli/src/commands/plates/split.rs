@@ -21,7 +21,7 @@ const PAPER: Rgb<u8> = Rgb([236, 232, 222]);
 
 /// Arguments of `split`.
 #[derive(Debug, Args)]
-pub(super) struct SplitArguments {
+pub(in crate::commands) struct SplitArguments {
     /// A catalogue number, identifier, manifest, picture or folder of frames.
     plate: String,
     /// Picture to draw (PNG; default: `target/<identifier>-panels.png`).

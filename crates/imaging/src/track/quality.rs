@@ -1,0 +1,1 @@
+//! How far a tracked point may be trusted.
