@@ -23,8 +23,7 @@ pub fn motion(gait: Gait, seed: u64, panels: usize) -> SpecimenMotion {
     }
 }
 
-fn posed(pose: Posed) -> PosedHorse {
-    let Posed { time_s, bones, croup, dock, down } = pose;
+fn posed(Posed { time_s, bones, croup, dock, down }: Posed) -> PosedHorse {
     PosedHorse { time_s, bones, croup, dock, down }
 }
 

@@ -16,7 +16,7 @@ impl PanelTransform {
     /// The map that takes the corners of a `width` x `height` rectangle (top left, top right, bottom right, bottom left)
     /// to those of a quadrilateral on the plate; none when the quadrilateral is not convex or has no area.
     pub fn new(quad_px: [Point; 4], [width, height]: [f64; 2]) -> Option<Self> {
-        if !is_convex(&quad_px) || !(width > 0.0 && height > 0.0) {
+        if !(is_convex(&quad_px) && width > 0.0 && height > 0.0) {
             return None;
         }
         let unit = plate_from_unit_square(&quad_px)?;

@@ -37,6 +37,8 @@ type Point = [f64; 2];
 
 /// Least side of a picture that is searched, px: the panels of a smaller one would show nothing.
 const LEAST_PLATE_PX: u32 = 48;
+/// Standard deviation of a normal variable per median of its distance from the middle.
+const SD_PER_MEDIAN: f64 = 1.4826;
 /// Least difference of grey values that is a picture.
 const LEAST_RANGE: u8 = 8;
 
@@ -81,7 +83,8 @@ pub fn split(plate: &GrayImage) -> Split {
     let Some(best) = readings.first().filter(|best| best.is_credible()) else {
         return Split { panels: vec![whole(plate)], doubts: vec![Doubt::NoMount] };
     };
-    let panels = best.layout.cells.iter().zip(&best.outlines).map(|(cell, outline)| panel(cell, outline)).collect();
+    let panels =
+        best.layout.cells.iter().zip(&best.outlines).map(|(cell, outline)| panel(cell, outline)).collect();
     Split { panels, doubts: doubt::doubts(best, &readings[1..]) }
 }
 

@@ -1,5 +1,7 @@
 //! The picture without the horse: the wall as far as its light changes gently, and below it the track, row by row.
 
+use std::ops::Range;
+
 use image::Luma;
 
 use super::{Plane, quantile};
@@ -178,38 +180,34 @@ impl Cells {
 /// first row of the track.
 fn add_track(picture: &Plane, tone: &mut Plane, noise: f32) -> u32 {
     let (width, height) = picture.dimensions();
-    let off = |y: u32| {
-        let mut off: Vec<f32> =
-            (0..width).map(|x| picture.get_pixel(x, y).0[0] - tone.get_pixel(x, y).0[0]).collect();
-        quantile(&mut off, ROW_SHARE)
-    };
-    let rows: Vec<(u32, f32)> = ((TRACK * f64::from(height)) as u32..height).map(|y| (y, off(y))).collect();
     let gap = (f64::from(height) * GAP).ceil() as u32;
     let mut top = height;
-    for (y, off) in rows.iter().rev() {
-        if off.abs() > 2.0 * noise {
-            top = *y;
+    for y in ((TRACK * f64::from(height)) as u32..height).rev() {
+        if off_in_row(picture, tone, y, 0..width).abs() > 2.0 * noise {
+            top = y;
         } else if top > y + gap {
             break;
         }
     }
-    let blurred = if top < height { top.saturating_sub(BLURRED) } else { height };
-    for y in blurred..height {
-        let offs: Vec<f32> = (0..BLOCKS)
-            .map(|block| {
-                let xs = block * width / BLOCKS..(block + 1) * width / BLOCKS;
-                let mut off: Vec<f32> =
-                    xs.map(|x| picture.get_pixel(x, y).0[0] - tone.get_pixel(x, y).0[0]).collect();
-                quantile(&mut off, ROW_SHARE)
-            })
-            .collect();
+    let first = if top < height { top.saturating_sub(BLURRED) } else { height };
+    for y in first..height {
+        let block = |block: u32| block * width / BLOCKS..(block + 1) * width / BLOCKS;
+        let offs: Vec<f32> = (0..BLOCKS).map(|i| off_in_row(picture, tone, y, block(i))).collect();
         for x in 0..width {
-            let place =
-                ((x as f32 + 0.5) / width as f32 * BLOCKS as f32 - 0.5).clamp(0.0, BLOCKS as f32 - 1.0);
+            let place = (x as f32 + 0.5) / width as f32 * BLOCKS as f32 - 0.5;
+            let place = place.clamp(0.0, BLOCKS as f32 - 1.0);
             let (left, share) = (place as usize, place.fract());
             let right = (left + 1).min(offs.len() - 1);
             tone.get_pixel_mut(x, y).0[0] += (1.0 - share) * offs[left] + share * offs[right];
         }
     }
     top
+}
+
+/// How far part of a row is from a tone, but for the legs in it, which may be darker or lighter.
+fn off_in_row(picture: &Plane, tone: &Plane, y: u32, columns: Range<u32>) -> f32 {
+    let mut off: Vec<f32> =
+        columns.map(|x| picture.get_pixel(x, y).0[0] - tone.get_pixel(x, y).0[0]).collect();
+    let (low, high) = (quantile(&mut off, 1.0 - ROW_SHARE), quantile(&mut off, ROW_SHARE));
+    if low.abs() < high.abs() { low } else { high }
 }

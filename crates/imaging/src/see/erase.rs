@@ -10,6 +10,8 @@ const LEAST_CONFIDENCE: f64 = 0.15;
 const MOST_BREADTH: f64 = 0.013;
 /// What is so many times broader or deeper than the line is something before it: a leg.
 const BEFORE: f64 = 1.7;
+/// Where so little of the line's depth is left it is behind something, or not there.
+const ABSENT: f64 = 0.5;
 /// Difference of tone that grain alone makes.
 const LITTLE: f64 = 12.0;
 /// Uprights lean less than this, px per px: those of 1878 lean inward by up to 0.1.
@@ -17,17 +19,19 @@ const UPRIGHT: Search = Search { lean: 0.16, length: 0.22 };
 /// Panels are squared up; rails and rules stay nearly level.
 pub(super) const LEVEL: Search = Search { lean: 0.05, length: 0.4 };
 
-/// The panel without uprights and rails of a tone.
-pub(super) fn erased(image: &GrayImage, tone: Tone) -> GrayImage {
+/// The panel without the uprights and rails that are of the horse's tone, next to the wall's. Before a light horse, dark ones
+/// matter, too: its hooves and mane are.
+pub(super) fn erased(image: &GrayImage, horse: Tone) -> GrayImage {
+    let tones: &[Tone] = if horse == Tone::Dark { &[Tone::Dark] } else { &[Tone::Light, Tone::Dark] };
     let mut clean = image.clone();
-    for line in find(image, None, tone, UPRIGHT) {
+    for line in tones.iter().flat_map(|tone| find(image, None, *tone, UPRIGHT)) {
         erase(&mut clean, &line);
     }
-    let mut turned = transposed(&clean);
-    for line in find(&transposed(image), None, tone, LEVEL) {
-        erase(&mut turned, &line);
+    let (turned, mut clean) = (transposed(image), transposed(&clean));
+    for line in tones.iter().flat_map(|tone| find(&turned, None, *tone, LEVEL)) {
+        erase(&mut clean, &line);
     }
-    transposed(&turned)
+    transposed(&clean)
 }
 
 /// Columns become rows.
@@ -68,5 +72,7 @@ fn is_hidden(image: &GrayImage, line: &Upright, y: u32, x: f64) -> bool {
     let like = |x: &u32| (at(*x) - at(middle)).abs() < 0.5 * line.depth;
     let to_left = (first..middle).rev().take_while(like).count();
     let to_right = (middle + 1..=last).take_while(like).count();
-    depth > BEFORE * line.depth + LITTLE || (1 + to_left + to_right) as f64 > BEFORE * line.breadth + 2.0
+    depth < ABSENT * line.depth
+        || depth > BEFORE * line.depth + LITTLE
+        || (1 + to_left + to_right) as f64 > BEFORE * line.breadth + 2.0
 }

@@ -28,9 +28,8 @@ const OWN_TONE: f32 = 0.3;
 const PIECE: f64 = 0.006;
 /// ... and no further away than this share of the longer side belong to it: a head above a white shirt.
 const PIECE_REACH: f64 = 0.065;
-
 /// A piece below the horse's middle must be this near, share of the longer side: a hoof past a white sock.
-const LOW_REACH: f64 = 0.02;
+const LOW_REACH: f64 = 0.03;
 /// A hoof is broader than the leg it hangs from by at most this much a row to each side, px.
 const HANG: u32 = 1;
 /// Weight of a pixel's tone against the reduced outline.
@@ -38,12 +37,11 @@ const TONE_WEIGHT: f32 = 1.2;
 /// Half the side of the square whose horse pixels tell its tone there, px.
 const LOCAL: u32 = 3;
 /// A sole is seen this far into its shadow, share of the height.
-const SHADOW: f64 = 0.006;
+const SHADOW: f64 = 0.004;
 /// A hoof and pastern are no higher than this, share of the height.
 const HOOF: f64 = 0.06;
 /// Pale clothes of a rider: log odds by the tone alone, above the horse's middle and no further from it than a piece.
 const PALE_ODDS: f32 = -2.0;
-
 /// Half the least thickness of such a piece, px: the horse's blurred edge is thinner.
 const PALE_THICKNESS: u8 = 2;
 
@@ -170,14 +168,21 @@ fn with_pieces(mask: &GrayImage, track: u32) -> GrayImage {
     let [above, below] = [PIECE_REACH, LOW_REACH].map(|share| (share * longest(mask)).ceil() as u8);
     let mut kept = vec![false; pieces.sizes.len()];
     kept[largest] = true;
-    for (x, y, _) in mask.enumerate_pixels().filter(|(_, y, _)| *y < track) {
+    let mut reaches_wall = vec![false; pieces.sizes.len()];
+    for (x, y, _) in mask.enumerate_pixels() {
         let reach = if y < middle { above } else { below };
         kept[pieces.at(x, y)] |= distance.get_pixel(x, y).0[0] <= reach;
+        reaches_wall[pieces.at(x, y)] |= y < track;
     }
     let least = PIECE * f64::from(pieces.sizes[largest]);
     binary(width, height, |x, y| {
         let i = pieces.at(x, y);
-        i == largest || i > 0 && kept[i] && f64::from(pieces.sizes[i]) >= least && !pieces.at_border[i]
+        i == largest
+            || i > 0
+                && kept[i]
+                && reaches_wall[i]
+                && f64::from(pieces.sizes[i]) >= least
+                && !pieces.at_border[i]
     })
 }
 

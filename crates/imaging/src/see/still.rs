@@ -11,7 +11,7 @@ const FEWEST: usize = 8;
 /// Width of the strips at the sides where frames are compared, share of the width.
 const SIDE: f64 = 0.08;
 /// Frames differ there by less than this part of what a smooth wall leaves unexplained.
-const MOST_CHANGE: f32 = 0.35;
+const MOST_CHANGE: f32 = 0.15;
 /// Of a pixel's tones over time, the one that is the background's, counted from the horse's end.
 const SEEN: f64 = 0.8;
 /// Clouds, leaves and coding change the background by this many grey values.

@@ -32,13 +32,19 @@ pub(super) fn complete(cells: &mut [Cell], seen: &[[f64; 4]], axis: usize) -> Ve
 
 /// Edges of panels of unusual width (axis 0) or height (axis 1) are put where those of their column or row are, unless they were
 /// clearly seen. Returns which panels changed.
-pub(super) fn agree(cells: &mut [Cell], region: Rectangle, axis: usize, seen: Option<&[[f64; 4]]>) -> Vec<bool> {
+pub(super) fn agree(
+    cells: &mut [Cell],
+    region: Rectangle,
+    axis: usize,
+    seen: Option<&[[f64; 4]]>,
+) -> Vec<bool> {
     let usual = median(cells.iter().map(|cell| cell.size(axis)).collect());
     let is_usual = |cell: &Cell| (cell.size(axis) / usual - 1.0).abs() <= USUAL;
     let before = cells.to_vec();
     let mut changed = vec![false; cells.len()];
     for (i, cell) in cells.iter_mut().enumerate().filter(|(_, cell)| !is_usual(cell)) {
-        let mates: Vec<&Cell> = before.iter().filter(|mate| is_usual(mate) && cell.is_mate(mate, axis)).collect();
+        let mates: Vec<&Cell> =
+            before.iter().filter(|mate| is_usual(mate) && cell.is_mate(mate, axis)).collect();
         let expected = if mates.is_empty() {
             grown(cell, &before, region, axis, usual)
         } else {

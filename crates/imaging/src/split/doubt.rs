@@ -1,5 +1,6 @@
 //! What speaks against the panels that were found.
 
+use super::layout::SHAPES;
 use super::overlap::iou;
 use super::reading::{LEAST_SCORE, Outline, Reading};
 
@@ -9,10 +10,10 @@ const LEAST_SIDE: f64 = 0.3;
 const LEAST_OUTLINE: f64 = 0.6;
 /// Departure from the usual width or height that is unusual: real panels differ by 5 %.
 const UNLIKE: f64 = 0.055;
-/// Width over height of a photograph of a horse, from upright to two horses long.
-const SHAPES: std::ops::RangeInclusive<f64> = 0.75..=1.75;
 /// Overlap of two panels (intersection over union) that is more than a shared edge.
 const OVERLAP: f64 = 0.01;
+/// Overlap of the same panel in two readings below which it is not in the same place.
+const SAME_PLACE: f64 = 0.9;
 /// Least score of a reading with fewer panels, against the best, at which it may be the right one: every plate with thin
 /// gutters has one, while of those with more panels all are of interest.
 const COARSER_RIVAL: f64 = 0.9;
@@ -66,6 +67,9 @@ pub enum Doubt {
         /// Panels of the other reading.
         other: usize,
     },
+    /// As many panels are possible in other places.
+    #[error("as many panels are possible in other places")]
+    OtherPlaces,
     /// Rows have different numbers of panels.
     #[error("the rows do not have equally many panels")]
     UnevenRows,
@@ -96,7 +100,9 @@ pub enum Doubt {
         ratio: f64,
     },
     /// The panels' shape is unusual.
-    #[error("the panels are {width_by_height:.2} times as wide as high; are they two photographs each, or a part of one?")]
+    #[error(
+        "the panels are {width_by_height:.2} times as wide as high; are they two photographs each, or a part of one?"
+    )]
     OddShape {
         /// Usual width over usual height.
         width_by_height: f64,
@@ -113,41 +119,58 @@ pub enum Doubt {
 
 /// All doubts about a reading, given the others.
 pub(super) fn doubts(reading: &Reading, others: &[Reading]) -> Vec<Doubt> {
-    let mut doubts = Vec::new();
-    let found = reading.outlines.len();
-    if found == 1 {
+    let mut doubts = rivals(reading, others);
+    if reading.outlines.len() == 1 {
         doubts.push(Doubt::OnlyOne);
     }
-    let mut counts: Vec<usize> = others
-        .iter()
-        .filter(|other| other.outlines.len() != found && other.is_credible())
-        .filter(|other| {
-            let least = if other.outlines.len() > found { LEAST_SCORE } else { COARSER_RIVAL };
-            other.score >= least * reading.score
-        })
-        .map(|other| other.outlines.len())
-        .collect();
-    counts.sort_unstable();
-    counts.dedup();
-    doubts.extend(counts.into_iter().map(|other| Doubt::OtherCount { found, other }));
     if !reading.layout.is_full {
         doubts.push(Doubt::UnevenRows);
     }
-    let usual = reading.usual_size_px();
-    let width_by_height = usual[0] / usual[1];
-    if !SHAPES.contains(&width_by_height) {
-        doubts.push(Doubt::OddShape { width_by_height });
+    let usual_px = reading.usual_size_px();
+    if !has_usual_shape(reading) {
+        doubts.push(Doubt::OddShape { width_by_height: usual_px[0] / usual_px[1] });
     }
     for (i, outline) in reading.outlines.iter().enumerate() {
-        doubts.extend(outline_doubts(i + 1, outline, usual));
+        doubts.extend(outline_doubts(i + 1, outline, usual_px));
         let later = reading.outlines.iter().enumerate().skip(i + 1);
-        doubts.extend(
-            later
-                .filter(|(_, other)| iou(&outline.quad_px, &other.quad_px) > OVERLAP)
-                .map(|(j, _)| Doubt::Overlap { panel: i + 1, other: j + 1 }),
-        );
+        let overlapping = later.filter(|(_, other)| iou(&outline.quad_px, &other.quad_px) > OVERLAP);
+        doubts.extend(overlapping.map(|(j, _)| Doubt::Overlap { panel: i + 1, other: j + 1 }));
     }
     doubts
+}
+
+/// Other readings that may be the right one.
+fn rivals(reading: &Reading, others: &[Reading]) -> Vec<Doubt> {
+    let found = reading.outlines.len();
+    let rivals = others.iter().filter(|other| {
+        let least = if other.outlines.len() < found { COARSER_RIVAL } else { LEAST_SCORE };
+        other.is_credible() && has_usual_shape(other) && other.score >= least * reading.score
+    });
+    let mut doubts = Vec::new();
+    for other in rivals {
+        let doubt = if other.outlines.len() != found {
+            Doubt::OtherCount { found, other: other.outlines.len() }
+        } else if is_elsewhere(reading, other) {
+            Doubt::OtherPlaces
+        } else {
+            continue;
+        };
+        if !doubts.contains(&doubt) {
+            doubts.push(doubt);
+        }
+    }
+    doubts
+}
+
+/// Whether some panel of as many is in another place.
+fn is_elsewhere(reading: &Reading, other: &Reading) -> bool {
+    let mut pairs = reading.outlines.iter().zip(&other.outlines);
+    pairs.any(|(a, b)| iou(&a.quad_px, &b.quad_px) < SAME_PLACE)
+}
+
+fn has_usual_shape(reading: &Reading) -> bool {
+    let [width, height] = reading.usual_size_px();
+    SHAPES.contains(&(width / height))
 }
 
 fn outline_doubts(panel: usize, outline: &Outline, usual_px: [f64; 2]) -> Vec<Doubt> {
@@ -158,7 +181,7 @@ fn outline_doubts(panel: usize, outline: &Outline, usual_px: [f64; 2]) -> Vec<Do
         .map(|(side, seen)| Doubt::HiddenEdge { panel, side, seen })
         .collect();
     let seen = outline.mean_seen();
-    if seen < LEAST_OUTLINE {
+    if doubts.is_empty() && seen < LEAST_OUTLINE {
         doubts.push(Doubt::FaintOutline { panel, seen });
     }
     let [a, b, c, d] = outline.quad_px;
@@ -167,7 +190,9 @@ fn outline_doubts(panel: usize, outline: &Outline, usual_px: [f64; 2]) -> Vec<Do
         0.5 * (length(a, b) + length(d, c)) / usual_px[0],
         0.5 * (length(a, d) + length(b, c)) / usual_px[1],
     ];
-    let ratio = ratios.into_iter().fold(1.0, |most: f64, r| if (r - 1.0).abs() > (most - 1.0).abs() { r } else { most });
+    let ratio = ratios
+        .into_iter()
+        .fold(1.0, |most: f64, r| if (r - 1.0).abs() > (most - 1.0).abs() { r } else { most });
     if (ratio - 1.0).abs() > UNLIKE {
         doubts.push(Doubt::UnlikeSize { panel, ratio });
     }

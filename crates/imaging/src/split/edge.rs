@@ -89,7 +89,8 @@ pub(super) fn find(plate: &GrayImage, folds: &[Fold], rough: RoughEdge) -> SeenE
 
 /// The line through the places where scan lines first differ from the mount.
 fn outermost(strip: &Strip, rim: usize) -> Option<Line> {
-    let begins = |line: usize| Some([along(line), strip.first_px + strip.step_px * begins(strip, line, rim)? as f64]);
+    let begins =
+        |line: usize| Some([along(line), strip.first_px + strip.step_px * begins(strip, line, rim)? as f64]);
     straight(&(0..SCAN_LINES).filter_map(begins).collect::<Vec<Point>>())
 }
 
@@ -109,7 +110,8 @@ fn likeliest(strip: &Strip, rim: usize, most_lean_px: f64) -> Line {
         let offset = strip.first_px + strip.step_px * position as f64;
         for step in -leans..=leans {
             let line = [offset, 2.0 * strip.step_px * step as f64];
-            let steps = sums.iter().enumerate().map(|(i, sums)| step_worth(sums, strip.crossing(line, i), rim));
+            let steps =
+                sums.iter().enumerate().map(|(i, sums)| step_worth(sums, strip.crossing(line, i), rim));
             let worth = steps.sum::<f64>() / SCAN_LINES as f64 - FAR * (offset / depth).abs();
             if worth > best.0 {
                 best = (worth, line);
@@ -131,7 +133,8 @@ fn running_sums(values: &[f64]) -> Vec<f64> {
 fn step_worth(sums: &[f64], at: f64, rim: usize) -> f64 {
     let last = sums.len() - 1;
     let at = at.round().clamp(0.0, last as f64) as usize;
-    let mean = |from: usize, to: usize| if to > from { (sums[to] - sums[from]) / (to - from) as f64 } else { 0.0 };
+    let mean =
+        |from: usize, to: usize| if to > from { (sums[to] - sums[from]) / (to - from) as f64 } else { 0.0 };
     mean(at, (at + rim).min(last)) - mean(0, at)
 }
 

@@ -4,7 +4,7 @@ use image::{GrayImage, Luma};
 
 use super::Point;
 use super::mask::{Along, Mask, Rectangle, steepest_lean};
-use super::spans::GUTTER;
+use super::spans::{GUTTER, runs};
 
 /// Least share of the gutters' height at which a fold is unlike the mount.
 const LEAST_SHARE: f64 = 0.7;
@@ -16,6 +16,8 @@ const WIDEST: f64 = 0.04;
 const INNER: std::ops::RangeInclusive<f64> = 0.1..=0.9;
 /// Least height of all gutters together, as a share of the plate's height: fewer may be crossed by chance.
 const LEAST_GUTTERS: f64 = 0.015;
+/// Margin above and below all photographs that is looked at, as a share of the plate's height: the page may end there.
+const MARGIN: f64 = 0.03;
 /// Most rows of gutter that are looked at.
 const MOST_ROWS: usize = 60;
 /// Most folds of a page; more are gutters of a mount of another tone.
@@ -85,10 +87,15 @@ pub(super) fn find(mask: &Mask, region: Rectangle) -> Vec<Fold> {
 /// Some of the rows that are gutters; none when there are too few to tell a fold from a speck.
 fn gutter_rows(mask: &Mask, region: Rectangle) -> Vec<usize> {
     let [_, top, _, bottom] = region;
-    let shares = mask.line_shares(Along::Rows, region);
-    let rows: Vec<usize> = (top..bottom).filter(|y| shares[y - top] >= GUTTER).collect();
+    let height = (bottom - top) as f64;
+    let shares = mask.path_shares(Along::Rows, region);
+    let photographs = runs(&shares, GUTTER);
+    let (Some(first), Some(last)) = (photographs.first(), photographs.last()) else { return Vec::new() };
+    let margin = (MARGIN * height) as usize;
+    let near = first.start.saturating_sub(margin)..(last.end + margin).min(shares.len());
+    let rows: Vec<usize> = near.filter(|y| shares[*y] >= GUTTER).map(|y| top + y).collect();
     let is_one_band = rows.windows(2).all(|pair| pair[1] == pair[0] + 1);
-    if is_one_band || (rows.len() as f64) < LEAST_GUTTERS * (bottom - top) as f64 {
+    if is_one_band || (rows.len() as f64) < LEAST_GUTTERS * height {
         return Vec::new();
     }
     let every = rows.len().div_ceil(MOST_ROWS);

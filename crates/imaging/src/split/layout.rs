@@ -13,6 +13,11 @@ const BLANK: f64 = 0.9;
 const MOUNT_ENDS: f64 = 0.5;
 /// Most of the way from an edge to its neighbour that other panels of the same row or column may take up.
 const MOST_NEAR: f64 = 0.7;
+/// Width over height of a photograph of a horse, from upright to two horses long, and the worth of panels of another shape.
+pub(super) const SHAPES: std::ops::RangeInclusive<f64> = 0.75..=1.7;
+const ODD: f64 = 0.5;
+/// Points along each gutter whose tone is looked at.
+const GUTTER_POINTS: usize = 40;
 /// Power of the number of panels with which a layout is worth more: thin gutters are more easily missed than imagined.
 const MORE_PANELS: f64 = 0.5;
 
@@ -74,25 +79,51 @@ pub(super) struct Layout {
     pub(super) is_full: bool,
 }
 
-/// Finds the panels in a region of mount; none when there is nothing like one.
-pub(super) fn find(mask: &Mask, region: Rectangle) -> Option<Layout> {
+impl Layout {
+    /// Points half way between neighbouring panels, in pixels of the mask.
+    pub(super) fn gutter_points(&self) -> Vec<[f64; 2]> {
+        let mut points = Vec::new();
+        for (i, cell) in self.cells.iter().enumerate() {
+            for (axis, other) in self.cells[i + 1..].iter().flat_map(|other| [(0, other), (1, other)]) {
+                let is_next = if axis == 0 {
+                    other.row == cell.row && other.column == cell.column + 1
+                } else {
+                    other.row == cell.row + 1 && cell.overlap(other, 0) > 0.5 * cell.size(0)
+                };
+                if is_next {
+                    let across = 0.5 * (cell.edges[axis + 2] + other.edges[axis]);
+                    points.extend((0..GUTTER_POINTS).map(|k| {
+                        let share = (k as f64 + 0.5) / GUTTER_POINTS as f64;
+                        let along = cell.edges[1 - axis] + share * cell.size(1 - axis);
+                        if axis == 0 { [across, along] } else { [along, across] }
+                    }));
+                }
+            }
+        }
+        points
+    }
+}
+
+/// Finds the panels in a region of mount, between paths that are mount for a share of their length; none when there is nothing
+/// like one.
+pub(super) fn find(mask: &Mask, region: Rectangle, gutter: f64) -> Option<Layout> {
     let [left, top, right, _] = region;
-    let row_runs = runs(&mask.line_shares(Along::Rows, region));
-    let height = common_size(std::slice::from_ref(&row_runs))?;
+    let row_runs = runs(&mask.path_shares(Along::Rows, region), gutter);
+    let height = common_size(std::slice::from_ref(&row_runs), &(0.0..=f64::MAX))?;
     let bands: Vec<Rectangle> = panels(&row_runs, height)
         .iter()
         .map(|span| [left, top + span.start, right, top + span.end])
         .filter(|band| 1.0 - mask.share(*band) >= LEAST_CONTENT)
         .collect();
     let column_runs: Vec<Vec<Span>> =
-        bands.iter().map(|band| runs(&mask.line_shares(Along::Columns, *band))).collect();
-    let width = common_size(&column_runs)?;
-    if std::env::var("SPLIT_DEBUG").is_ok() { eprintln!("{height} {bands:?} {width} {column_runs:?}"); for b in &bands { let s = mask.line_shares(Along::Columns, *b); eprintln!("{:?}", s.iter().enumerate().filter(|v| *v.1 > 0.5).map(|(i, v)| (i, (v * 100.0) as u8)).collect::<Vec<_>>()); } }
+        bands.iter().map(|band| runs(&mask.path_shares(Along::Columns, *band), gutter)).collect();
+    let width = common_size(&column_runs, &(SHAPES.start() * height..=SHAPES.end() * height))?;
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     for (band, runs) in bands.iter().zip(&column_runs) {
         let mut cells: Vec<Cell> = Vec::new();
         for span in panels(runs, width) {
-            let box_px = trimmed(mask, [left + span.start, band[1], left + span.end, band[3]], height);
+            let box_px =
+                trimmed(mask, [left + span.start, band[1], left + span.end, band[3]], height, gutter);
             let mount_ends = |edges| std::array::from_fn(|side| mount_end(mask, region, edges, side) as f64);
             cells.extend(box_px.map(|edges| Cell {
                 row: rows.len(),
@@ -106,16 +137,21 @@ pub(super) fn find(mask: &Mask, region: Rectangle) -> Option<Layout> {
         }
     }
     let (mut cells, is_full) = (rows.concat(), is_full(mask, region, &rows));
-    let worth = worth(mask, region, &cells);
     for axis in 0..2 {
         agree(&mut cells, region, axis, None);
     }
+    let worth = worth(mask, region, &cells);
     (!cells.is_empty()).then_some(Layout { cells, region, worth, is_full })
 }
 
 /// A cell without the mount above and below its photograph; none when it is mostly mount.
-fn trimmed(mask: &Mask, [left, top, right, bottom]: Rectangle, height: f64) -> Option<Rectangle> {
-    let rows = runs(&mask.line_shares(Along::Rows, [left, top, right, bottom]));
+fn trimmed(
+    mask: &Mask,
+    [left, top, right, bottom]: Rectangle,
+    height: f64,
+    gutter: f64,
+) -> Option<Rectangle> {
+    let rows = runs(&mask.path_shares(Along::Rows, [left, top, right, bottom]), gutter);
     let tallest = panels(&rows, height).into_iter().max_by(|a, b| a.length().total_cmp(&b.length()));
     let (start, end) = match tallest {
         Some(span) => (span.start, span.end),
@@ -135,8 +171,11 @@ fn mount_end(mask: &Mask, region: Rectangle, cell: Rectangle, side: usize) -> us
         mask.share(line) >= MOUNT_ENDS
     };
     // Outwards, the line before the edge first.
-    let mut lines: Box<dyn Iterator<Item = usize>> =
-        if side < 2 { Box::new((region[side]..cell[side]).rev()) } else { Box::new(cell[side]..region[side]) };
+    let mut lines: Box<dyn Iterator<Item = usize>> = if side < 2 {
+        Box::new((region[side]..cell[side]).rev())
+    } else {
+        Box::new(cell[side]..region[side])
+    };
     let Some(first) = lines.by_ref().find(|at| is_mount(*at)) else { return region[side] };
     let last = lines.take_while(|at| is_mount(*at)).last().unwrap_or(first);
     if side < 2 { last } else { last + 1 }
@@ -146,7 +185,9 @@ fn mount_end(mask: &Mask, region: Rectangle, cell: Rectangle, side: usize) -> us
 fn is_full(mask: &Mask, region: Rectangle, rows: &[Vec<Cell>]) -> bool {
     let Some(fullest) = rows.iter().max_by_key(|row| row.len()) else { return false };
     rows.iter().enumerate().all(|(i, row)| {
-        let (Some(first), Some(last), Some(outer)) = (row.first(), row.last(), fullest.last()) else { return false };
+        let (Some(first), Some(last), Some(outer)) = (row.first(), row.last(), fullest.last()) else {
+            return false;
+        };
         let missing = [last.edges[2], last.edges[1], outer.edges[2], last.edges[3]];
         let missing = missing.map(|edge| edge.max(0.0) as usize);
         let is_blank = missing[2] <= region[2] && mask.share(missing) >= BLANK;
@@ -156,10 +197,14 @@ fn is_full(mask: &Mask, region: Rectangle, rows: &[Vec<Cell>]) -> bool {
 
 /// Share of the region in panels, times share of mount in the rest, less where panels are of unlike sizes.
 fn worth(mask: &Mask, region: Rectangle, cells: &[Cell]) -> f64 {
-    let area = |[left, top, right, bottom]: Rectangle| ((right - left) * (bottom - top)) as f64;
+    let area = |[left, top, right, bottom]: Rectangle| {
+        (right.saturating_sub(left) * bottom.saturating_sub(top)) as f64
+    };
     let (mut covered, mut mount_inside) = (0.0, 0.0);
     for cell in cells {
-        let rectangle = cell.edges.map(|edge| edge as usize);
+        let [left, top, right, bottom] = cell.edges.map(|edge| edge.max(0.0) as usize);
+        let rectangle =
+            [left.max(region[0]), top.max(region[1]), right.min(region[2]), bottom.min(region[3])];
         covered += area(rectangle);
         mount_inside += mask.share(rectangle) * area(rectangle);
     }
@@ -168,12 +213,15 @@ fn worth(mask: &Mask, region: Rectangle, cells: &[Cell]) -> f64 {
     if rest <= 0.0 || cells.len() < 2 {
         return 0.0;
     }
-    let purity = (mask.share(region) * whole - mount_inside) / rest;
+    let purity = ((mask.share(region) * whole - mount_inside) / rest).clamp(0.0, 1.0);
     let unlike = |axis: usize| {
         let usual = median(cells.iter().map(|cell| cell.size(axis)).collect());
-        cells.iter().map(|cell| (cell.size(axis) / usual - 1.0).abs().min(1.0)).sum::<f64>() / cells.len() as f64
+        cells.iter().map(|cell| (cell.size(axis) / usual - 1.0).abs().min(1.0)).sum::<f64>()
+            / cells.len() as f64
     };
     let alike = (1.0 - unlike(0) - unlike(1)).max(0.0);
+    let sizes = [0, 1].map(|axis| median(cells.iter().map(|cell| cell.size(axis)).collect()));
+    let shape = if SHAPES.contains(&(sizes[0] / sizes[1])) { 1.0 } else { ODD };
     let more = (cells.len() as f64).powf(MORE_PANELS);
-    covered / whole * purity * alike * (whole / mask.area()).sqrt() * more
+    covered / whole * purity * alike * (whole / mask.area()).sqrt() * more * shape
 }

@@ -7,6 +7,9 @@ use super::turn::BEYOND;
 
 /// Most a row or column of panels leans against the plate as a whole, as a slope: 1.2 degrees.
 const LEAN: f64 = 0.021;
+/// Pieces of a path, and how far it may bend from one to the next besides leaning, px.
+const PIECES: usize = 8;
+const BEND_PX: usize = 1;
 /// Least size of a piece of mount against the largest: a fold parts a mount, a horse is no mount.
 const LEAST_PIECE: f64 = 0.1;
 /// Pixels of the mask to one of the copy in which pieces are told apart.
@@ -93,38 +96,29 @@ impl Mask {
         f64::from(count) / area
     }
 
-    /// For each row (or column) of a rectangle, the share of mount along the line through its middle that has the most,
-    /// among lines that lean a little; 0..1.
-    pub(super) fn line_shares(&self, along: Along, [left, top, right, bottom]: Rectangle) -> Vec<f64> {
-        let (lines, span) = match along {
-            Along::Rows => (top..bottom, [left, right]),
-            Along::Columns => (left..right, [top, bottom]),
+    /// For each row (or column) of a rectangle, the share of mount along the path through its middle that has the most, among
+    /// paths that lean and bend a little: panels are not quite in line. 0..1.
+    pub(super) fn path_shares(&self, along: Along, [left, top, right, bottom]: Rectangle) -> Vec<f64> {
+        let (lines, from, to) = match along {
+            Along::Rows => (top..bottom, left, right),
+            Along::Columns => (left..right, top, bottom),
         };
-        let ends = [lines.start, lines.end.saturating_sub(1)];
-        let length = span[1].saturating_sub(span[0]);
-        let most = steepest_lean(length);
-        lines
-            .map(|line| {
-                let count = (-most..=most).map(|lean| self.leaning_count(along, line, ends, span, lean)).max();
-                f64::from(count.unwrap_or(0)) / length.max(1) as f64
+        let length = to.saturating_sub(from);
+        let ends: Vec<usize> = (0..=PIECES).map(|piece| from + piece * length / PIECES).collect();
+        let counts = |piece: usize| -> Vec<u32> {
+            lines.clone().map(|line| self.count(along, line, ends[piece], ends[piece + 1])).collect()
+        };
+        let bend = (LEAN * length as f64 / PIECES as f64).ceil() as usize + BEND_PX;
+        // Best paths from either end to the middle.
+        let best = |pieces: &mut dyn Iterator<Item = usize>| {
+            pieces.fold(vec![0; lines.len()], |best: Vec<u32>, piece| {
+                let near =
+                    |i: usize| best[i.saturating_sub(bend)..(i + bend + 1).min(best.len())].iter().max();
+                counts(piece).iter().enumerate().map(|(i, count)| count + near(i).unwrap_or(&0)).collect()
             })
-            .collect()
-    }
-
-    /// Mount pixels along a line that begins `lean` lines before its middle and ends as many after it, within the first and
-    /// the last line.
-    fn leaning_count(&self, along: Along, line: usize, ends: [usize; 2], [from, to]: [usize; 2], lean: isize) -> u32 {
-        let pieces = 2 * lean.abs() + 1;
-        let length = (to - from) as isize;
-        (0..pieces)
-            .map(|piece| {
-                let shifted = line as isize + (piece - lean.abs()) * lean.signum();
-                let shifted = shifted.clamp(ends[0] as isize, ends[1] as isize) as usize;
-                let begin = from + (piece * length / pieces) as usize;
-                let end = from + ((piece + 1) * length / pieces) as usize;
-                self.count(along, shifted, begin, end)
-            })
-            .sum()
+        };
+        let (before, behind) = (best(&mut (0..PIECES / 2)), best(&mut (PIECES / 2..PIECES).rev()));
+        before.iter().zip(behind).map(|(a, b)| f64::from(a + b) / length.max(1) as f64).collect()
     }
 }
 
@@ -151,6 +145,8 @@ pub(super) fn extent(mount: &GrayImage) -> Option<Rectangle> {
         .into_iter()
         .filter(|(count, _)| *count as f64 >= LEAST_PIECE * largest as f64)
         .map(|piece| piece.1)
-        .reduce(|[l, t, r, b], [left, top, right, bottom]| [l.min(left), t.min(top), r.max(right), b.max(bottom)])
+        .reduce(|[l, t, r, b], [left, top, right, bottom]| {
+            [l.min(left), t.min(top), r.max(right), b.max(bottom)]
+        })
         .map(|edges| edges.map(|edge| edge * COARSE as usize))
 }

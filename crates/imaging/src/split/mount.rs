@@ -3,6 +3,8 @@
 use image::GrayImage;
 use imageproc::stats::histogram;
 
+use super::{SD_PER_MEDIAN, median};
+
 /// Grey values of a mount, from the darkest to the lightest, both included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tones {
@@ -12,6 +14,8 @@ pub(super) struct Tones {
     pub(super) usual: f64,
 }
 
+/// Standard deviations of a mount's tone that its range spans to either side.
+const SPREADS: f64 = 4.0;
 /// How far a mount's tone may lie outside its range where grain was not averaged away, grey values.
 const GRAIN: f64 = 12.0;
 
@@ -19,6 +23,22 @@ impl Tones {
     /// Whether a grey value may be the mount's.
     pub(super) fn has(&self, tone: f64) -> bool {
         (f64::from(self.darkest) - GRAIN..=f64::from(self.lightest) + GRAIN).contains(&tone)
+    }
+
+    /// The range around grey values seen in gutters; none of no values.
+    pub(super) fn around(values: &[f64]) -> Option<Self> {
+        if values.is_empty() {
+            return None;
+        }
+        let usual = median(values.to_vec());
+        let spread = SD_PER_MEDIAN * median(values.iter().map(|v| (v - usual).abs()).collect());
+        let reach = (SPREADS * spread).max(GRAIN);
+        // Nothing is darker than black or lighter than white.
+        Some(Self {
+            darkest: (usual - reach).max(0.0) as u8,
+            lightest: (usual + reach).min(255.0) as u8,
+            usual,
+        })
     }
 
     fn new(counts: &[f64], darkest: usize, lightest: usize) -> Self {
@@ -58,7 +78,8 @@ pub(super) fn candidates(picture: &GrayImage) -> Vec<Tones> {
     for tones in ends.into_iter().chain(peaks(&counts)) {
         let share = counts[tones.darkest as usize..=tones.lightest as usize].iter().sum::<f64>() / total;
         let is_new = |other: &Tones| {
-            other.darkest.abs_diff(tones.darkest) >= DISTINCT || other.lightest.abs_diff(tones.lightest) >= DISTINCT
+            other.darkest.abs_diff(tones.darkest) >= DISTINCT
+                || other.lightest.abs_diff(tones.lightest) >= DISTINCT
         };
         if SHARES.contains(&share) && found.iter().all(is_new) {
             found.push(tones);
@@ -102,7 +123,8 @@ fn peaks(counts: &[f64]) -> Vec<Tones> {
     let mut found = Vec::new();
     for v in 0..256usize {
         let (from, to) = (v.saturating_sub(PEAK_REACH), (v + PEAK_REACH).min(255));
-        if smooth[v] <= 0.0 || (from..=to).any(|u| smooth[u] > smooth[v] || (smooth[u] == smooth[v] && u < v)) {
+        if smooth[v] <= 0.0 || (from..=to).any(|u| smooth[u] > smooth[v] || (smooth[u] == smooth[v] && u < v))
+        {
             continue;
         }
         let foot = 0.2 * smooth[v];

@@ -9,15 +9,21 @@ use super::layout::{self, Cell, Layout};
 use super::mask::{Mask, extent};
 use super::mount::{self, Tones};
 use super::small::{Small, within};
+use super::spans::{GUTTER, THIN_GUTTER};
 use super::turn::{Turn, tilt_rad, upright};
 use super::{Point, median};
 
 /// Most layouts whose edges are looked for on the plate.
-const MOST_READINGS: usize = 5;
+const MOST_READINGS: usize = 6;
 /// Share of the best score below which a reading is of no interest.
 pub(super) const LEAST_SCORE: f64 = 0.5;
 /// Power of what is seen of the outlines in a reading's score.
-const SEEN_POWER: i32 = 4;
+const SEEN_POWER: i32 = 2;
+/// Share of the outlines that may be seen less with a purer mount: some of what was seen may have been the page's border.
+const LESS_SEEN: f64 = 0.02;
+/// Least width of a mount around panels, in panel sizes; and least share of their outlines that must be seen.
+const MOUNT_MARGIN: f64 = 0.02;
+const MOUNTED_SEEN: f64 = 0.9;
 /// Least share of all outlines that is seen of panels on a mount: shapes in a single photograph have less.
 const CREDIBLE: f64 = 0.6;
 /// Sides of a cell in the order of a quadrilateral's edges: top, right, bottom, left.
@@ -55,10 +61,11 @@ pub(super) struct Reading {
 
 /// The readings of a plate, best first.
 pub(super) fn all(plate: &GrayImage, small: &Small) -> Vec<Reading> {
-    let mut readings: Vec<Reading> =
-        mount::candidates(&small.picture).into_iter().filter_map(|tones| Reading::new(small, tones)).collect();
+    let mut readings: Vec<Reading> = mount::candidates(&small.picture)
+        .into_iter()
+        .flat_map(|tones| Reading::of_tones(small, tones))
+        .collect();
     readings.sort_by(|a, b| b.layout.worth.total_cmp(&a.layout.worth));
-    if std::env::var("SPLIT_DEBUG").is_ok() { for r in &readings { eprintln!("{:?} {} worth {:.3} {:?} region {:?} tilt {:?}", r.mount, r.layout.cells.len(), r.layout.worth, r.folds, r.layout.region, r.turn); } }
     readings.truncate(MOST_READINGS);
     let mut best = 0.0f64;
     for reading in &mut readings {
@@ -66,20 +73,27 @@ pub(super) fn all(plate: &GrayImage, small: &Small) -> Vec<Reading> {
         if reading.layout.worth >= LEAST_SCORE * best {
             reading.find_edges(plate);
             best = best.max(reading.score);
-            if std::env::var("SPLIT_DEBUG").is_ok() { eprintln!("  {} seen {:.2} score {:.2}", reading.outlines.len(), reading.mean_seen(), reading.score); }
         }
     }
     readings.retain(|reading| !reading.outlines.is_empty());
     readings.sort_by(|a, b| b.score.total_cmp(&a.score));
+    if let Some(inner) = (1..readings.len()).find(|i| readings[*i].is_mounted_within(&readings[0])) {
+        readings.swap(0, inner);
+    }
+    if let Some(best) = readings.first_mut()
+        && let Some(purer) = best.with_purer_mount(plate, small)
+    {
+        *best = purer;
+    }
     readings
 }
 
 impl Reading {
-    /// Rough cells; none when there are none.
-    fn new(small: &Small, tones: Tones) -> Option<Self> {
-        let mask = within(&small.picture, tones.darkest, tones.lightest);
+    /// The readings with a range of tone as mount, without edges.
+    fn of_tones(small: &Small, mount: Tones) -> Vec<Self> {
+        let mask = within(&small.picture, mount.darkest, mount.lightest);
         let (mut turned, turn) = upright(&mask, tilt_rad(&mask));
-        let region = extent(&turned)?;
+        let Some(region) = extent(&turned) else { return Vec::new() };
         let mut mask = Mask::new(&turned);
         let folds = fold::find(&mask, region);
         if !folds.is_empty() {
@@ -88,14 +102,62 @@ impl Reading {
             }
             mask = Mask::new(&turned);
         }
-        let layout = layout::find(&mask, region)?;
         let factor = f64::from(small.factor);
         let on_plate = |fold: &Fold| Fold {
             ends: fold.ends.map(|end| turn.picture_from_turned(end).map(|v| v * factor)),
             width: fold.width * factor,
         };
-        let folds = folds.iter().map(on_plate).collect();
-        Some(Self { layout, outlines: Vec::new(), score: 0.0, turn, mount: tones, folds, factor })
+        let folds: Vec<Fold> = folds.iter().map(on_plate).collect();
+        let mut layouts: Vec<Layout> = [GUTTER, THIN_GUTTER]
+            .into_iter()
+            .filter_map(|gutter| layout::find(&mask, region, gutter))
+            .collect();
+        layouts.dedup_by_key(|layout| layout.cells.len());
+        let reading = |layout| Self {
+            layout,
+            outlines: Vec::new(),
+            score: 0.0,
+            turn,
+            mount,
+            folds: folds.clone(),
+            factor,
+        };
+        layouts.into_iter().map(reading).collect()
+    }
+
+    /// Whether its panels lie within those of another reading, clear of their corners: then those are mounts on a page.
+    fn is_mounted_within(&self, other: &Self) -> bool {
+        let is_clear = |inner: &Outline, outer: &Outline| {
+            let [width, height] = self.usual_size_px();
+            (0..4).all(|i| {
+                let ([x, y], [ox, oy]) = (inner.quad_px[i], outer.quad_px[i]);
+                // Outwards is left for the first and last corner, and up for the first two.
+                let outwards =
+                    [if i == 0 || i == 3 { x - ox } else { ox - x }, if i < 2 { y - oy } else { oy - y }];
+                let shares = [outwards[0] / width, outwards[1] / height];
+                shares.iter().all(|v| *v > -MOUNT_MARGIN) && shares.iter().any(|v| *v > MOUNT_MARGIN)
+            })
+        };
+        let mut pairs = self.outlines.iter().zip(&other.outlines);
+        self.outlines.len() == other.outlines.len()
+            && self.mean_seen() >= MOUNTED_SEEN
+            && pairs.all(|(inner, outer)| is_clear(inner, outer))
+    }
+
+    /// The same panels with the tones of the gutters between them for mount: what lies beyond the page may be of nearly the same
+    /// tone. None when that shows other panels, or less of them.
+    fn with_purer_mount(&self, plate: &GrayImage, small: &Small) -> Option<Self> {
+        let tone = |point: Point| {
+            let [x, y] = self.turn.picture_from_turned(point).map(|v| v.max(0.0) as u32);
+            small.picture.get_pixel_checked(x, y).map(|pixel| f64::from(pixel.0[0]))
+        };
+        let tones =
+            Tones::around(&self.layout.gutter_points().into_iter().filter_map(tone).collect::<Vec<f64>>())?;
+        let mut readings = Self::of_tones(small, tones);
+        readings.retain(|reading| reading.layout.cells.len() == self.layout.cells.len());
+        let mut purer = readings.into_iter().next()?;
+        purer.find_edges(plate);
+        (purer.mean_seen() >= self.mean_seen() - LESS_SEEN).then_some(purer)
     }
 
     /// Whether enough of the outlines is seen for them to be photographs on a mount.
@@ -156,7 +218,8 @@ impl Reading {
 
     /// Usual width and height of a panel, px.
     pub(super) fn usual_size_px(&self) -> [f64; 2] {
-        [0, 1].map(|axis| median(self.layout.cells.iter().map(|cell| cell.size(axis) * self.factor).collect()))
+        [0, 1]
+            .map(|axis| median(self.layout.cells.iter().map(|cell| cell.size(axis) * self.factor).collect()))
     }
 }
 

@@ -1,10 +1,18 @@
 //! Cutting a row of panels, seen as a profile of mount, into panels of nearly one size.
 
-/// Least share of mount along a line that can be a gutter: captions, numbers and a fold may cross it.
+use std::ops::RangeInclusive;
+
+/// Least share of mount along a path that is a gutter: captions, numbers and a fold may cross it.
 pub(super) const GUTTER: f64 = 0.92;
-/// What a panel loses of its worth by having a gutter inside, in lengths of that gutter: a dark line across a photograph is
+/// The same where gutters are so thin that panels and grain close them here and there.
+pub(super) const THIN_GUTTER: f64 = 0.8;
+/// What a panel loses of its worth by having gutters inside, in lengths of the gutters: a dark line across a photograph is
 /// swallowed where that makes panels alike, a gutter is not.
 const SWALLOWED: f64 = 3.0;
+/// Width of gutter, in panel sizes, for which it loses twice as much: wider than a line in a photograph.
+const WIDE: f64 = 0.005;
+/// Worth of panels of an unlikely size.
+const UNLIKELY: f64 = 0.5;
 /// Relative departure from the common size at which a panel is worth nothing.
 const UNLIKE: f64 = 0.5;
 /// Most runs of one profile that are weighed; a profile of more is not one of a row of panels.
@@ -27,14 +35,15 @@ impl Span {
     /// Worth as a panel of about a size.
     fn worth(&self, size: f64) -> f64 {
         let unlike = (self.length() / size - 1.0) / UNLIKE;
-        self.length() * (1.0 - unlike * unlike) - SWALLOWED * self.gutter as f64
+        let gutter = self.gutter as f64;
+        self.length() * (1.0 - unlike * unlike) - SWALLOWED * gutter * (1.0 + gutter / (WIDE * size))
     }
 }
 
 /// Stretches between gutters.
-pub(super) fn runs(shares_of_mount: &[f64]) -> Vec<Span> {
+pub(super) fn runs(shares_of_mount: &[f64], gutter: f64) -> Vec<Span> {
     let mut runs: Vec<Span> = Vec::new();
-    for (i, _) in shares_of_mount.iter().enumerate().filter(|(_, share)| **share < GUTTER) {
+    for (i, _) in shares_of_mount.iter().enumerate().filter(|(_, share)| **share < gutter) {
         match runs.last_mut() {
             Some(run) if run.end == i => run.end = i + 1,
             _ => runs.push(Span { start: i, end: i + 1, gutter: 0 }),
@@ -44,8 +53,8 @@ pub(super) fn runs(shares_of_mount: &[f64]) -> Vec<Span> {
     runs
 }
 
-/// The size that panels made of several rows of runs have in common; none without runs.
-pub(super) fn common_size(rows: &[Vec<Span>]) -> Option<f64> {
+/// The size that panels made of several rows of runs have in common, rather one of the likely sizes; none without runs.
+pub(super) fn common_size(rows: &[Vec<Span>], likely: &RangeInclusive<f64>) -> Option<f64> {
     let sizes = rows.iter().flat_map(|runs| joined(runs).into_iter().map(|span| span.length()));
     let worth = |size: f64| -> f64 {
         rows.iter().map(|runs| panels(runs, size).iter().map(|span| span.worth(size)).sum::<f64>()).sum()
@@ -55,7 +64,7 @@ pub(super) fn common_size(rows: &[Vec<Span>]) -> Option<f64> {
     seen.sort_by(f64::total_cmp);
     seen.dedup();
     for size in seen {
-        let candidate = worth(size);
+        let candidate = worth(size) * if likely.contains(&size) { 1.0 } else { UNLIKELY };
         if best.is_none_or(|(most, _)| candidate > most) {
             best = Some((candidate, size));
         }

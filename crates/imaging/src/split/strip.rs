@@ -7,7 +7,7 @@ use image::GrayImage;
 use super::edge::RoughEdge;
 use super::fold::Fold;
 use super::mount::Tones;
-use super::{Point, median};
+use super::{Point, SD_PER_MEDIAN, median};
 
 /// Lines across an edge along which tones are read.
 pub(super) const SCAN_LINES: usize = 64;
@@ -31,8 +31,6 @@ const CLEAR: f64 = 0.4;
 const NOISE: f64 = 4.0;
 const LEAST_CONTRAST: f64 = 6.0;
 const MOST_CONTRAST: f64 = 40.0;
-/// Standard deviation of a normal variable per median of its distance from the middle.
-const SD_PER_MEDIAN: f64 = 1.4826;
 
 /// Samples along lines across an edge, outermost first.
 pub(super) struct Strip {
@@ -89,8 +87,14 @@ impl Strip {
 }
 
 /// Departures from the mount, whose tone is that of the outer samples; the inner are photograph.
-fn departures(tones: &[Vec<f64>], expected: Tones, outer: Range<usize>, inner: Range<usize>) -> Vec<Vec<f64>> {
-    let samples = |range: Range<usize>| tones.iter().flat_map(move |line| line[range.clone()].iter().copied());
+fn departures(
+    tones: &[Vec<f64>],
+    expected: Tones,
+    outer: Range<usize>,
+    inner: Range<usize>,
+) -> Vec<Vec<f64>> {
+    let samples =
+        |range: Range<usize>| tones.iter().flat_map(move |line| line[range.clone()].iter().copied());
     let mount: Vec<f64> = samples(outer).filter(|tone| expected.has(*tone)).collect();
     let middle = if mount.is_empty() { expected.usual } else { median(mount.clone()) };
     let spread = SD_PER_MEDIAN * median(mount.iter().map(|tone| (tone - middle).abs()).collect());
@@ -126,5 +130,6 @@ fn tone(plate: &GrayImage, [x, y]: Point) -> f64 {
     let (fx, fy) = (x - x0 as f64, y - y0 as f64);
     let pixels = plate.as_raw();
     let at = |x: usize, y: usize| f64::from(pixels[y * width + x]);
-    (1.0 - fy) * ((1.0 - fx) * at(x0, y0) + fx * at(x1, y0)) + fy * ((1.0 - fx) * at(x0, y1) + fx * at(x1, y1))
+    (1.0 - fy) * ((1.0 - fx) * at(x0, y0) + fx * at(x1, y0))
+        + fy * ((1.0 - fx) * at(x0, y1) + fx * at(x1, y1))
 }

@@ -59,11 +59,12 @@ pub(super) fn upright(mask: &GrayImage, tilt_rad: f64) -> (GrayImage, Turn) {
 
 /// Tilt of the plate, radians, clockwise as seen: the angle at which rows and columns of mount stand out most.
 pub(super) fn tilt_rad(mask: &GrayImage) -> f64 {
+    let is_mount_summed = is_rare_at_border(mask);
     let best = |from: f64, step: f64, to: f64, every: usize| {
         let count = ((to - from) / step).round() as u32;
         (0..=count)
             .map(|i| from + step * f64::from(i))
-            .map(|degrees| (sharpness(mask, degrees.to_radians().tan(), every), degrees))
+            .map(|degrees| (sharpness(mask, degrees.to_radians().tan(), is_mount_summed, every), degrees))
             .fold((f64::MIN, 0.0), |best, candidate| if candidate.0 > best.0 { candidate } else { best })
             .1
     };
@@ -71,8 +72,9 @@ pub(super) fn tilt_rad(mask: &GrayImage) -> f64 {
     best(coarse - COARSE_STEP_DEG, FINE_STEP_DEG, coarse + COARSE_STEP_DEG, FINE_EVERY).to_radians()
 }
 
-/// How suddenly the sums along leaning rows and columns change from line to line, of every few pixels.
-fn sharpness(mask: &GrayImage, slope: f64, every: usize) -> f64 {
+/// How suddenly the sums along leaning rows and columns change from line to line, of every few pixels. What is summed is
+/// mount or its opposite, whichever is rarer at the picture's border, so that the border itself is no change.
+fn sharpness(mask: &GrayImage, slope: f64, is_mount_summed: bool, every: usize) -> f64 {
     let size = [mask.width() as usize, mask.height() as usize];
     let sizes = size.map(|length| length.div_ceil(every));
     let reach = sizes.map(|length| (slope.abs() * length as f64) as usize + 2);
@@ -82,9 +84,9 @@ fn sharpness(mask: &GrayImage, slope: f64, every: usize) -> f64 {
     for (y, line) in mask.as_raw().chunks_exact(size[0]).step_by(every).enumerate() {
         let shift = (slope * y as f64 + reach[1] as f64) as usize;
         for (x, value) in line.iter().step_by(every).enumerate() {
-            let is_mount = f32::from(u8::from(*value > 0));
-            rows[y + shifts[x]] += is_mount;
-            columns[x + shift] += is_mount;
+            let summed = f32::from(u8::from((*value > 0) == is_mount_summed));
+            rows[y + shifts[x]] += summed;
+            columns[x + shift] += summed;
         }
     }
     let change = |sums: &[f32], scale: usize| {
@@ -92,4 +94,15 @@ fn sharpness(mask: &GrayImage, slope: f64, every: usize) -> f64 {
         f64::from(sum) / (scale * scale) as f64
     };
     change(&rows, sizes[0]) + change(&columns, sizes[1])
+}
+
+/// Whether less than half of the picture's border is mount.
+fn is_rare_at_border(mask: &GrayImage) -> bool {
+    let (right, bottom) = (mask.width() - 1, mask.height() - 1);
+    let across = (0..=right).flat_map(|x| [(x, 0), (x, bottom)]);
+    let border = across.chain((0..=bottom).flat_map(|y| [(0, y), (right, y)]));
+    let (mount, all) = border.fold((0u32, 0u32), |(mount, all), (x, y)| {
+        (mount + u32::from(mask.get_pixel(x, y).0[0] > 0), all + 1)
+    });
+    2 * mount < all
 }

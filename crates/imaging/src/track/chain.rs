@@ -1,6 +1,8 @@
 //! A limb, or neck and head, as a chain of segments sought as one: the postures that what is expected and what is seen
 //! make most probable.
 
+use std::ops::RangeInclusive;
+
 use super::climb::climb;
 use super::expectation::Expectation;
 use super::figure::Segment;
@@ -12,9 +14,10 @@ use super::template::Template;
 const STANDING_SD: f64 = 0.04;
 /// What a tip that stands as expected is worth, in units of log probability.
 const STANDING_BONUS: f64 = 3.0;
-/// First steps of the refinement: root, body heights; angles, radians; lengths, shares. Halved this many times.
+/// First steps of the refinement: root, body heights; angles, radians; lengths, shares.
 const STEPS: [f64; 3] = [0.012, 0.08, 0.06];
-const HALVINGS: u32 = 3;
+/// How often they are halved for postures still to be chosen from, and then again for the chosen one.
+const HALVINGS: [u32; 2] = [1, 3];
 
 /// A segment of a chain: what is expected of it and what it looks like.
 pub(super) struct Link {
@@ -85,22 +88,27 @@ impl Chain {
         let search = Search::run(self, &next.coarse);
         let Some(tips) = search.tips() else { return Vec::new() };
         let refined = |state| {
-            let mut posture = self.refine(&next.fine, &search.joints(self, state));
+            let mut posture = self.refine(&next.fine, &search.joints(self, state), 0..=HALVINGS[0]);
             posture.concentration = posture.tip().map_or(0.0, |tip| tips.share_near(tip));
             posture
         };
         TipMap::peaks(&tips).into_iter().map(refined).collect()
     }
 
+    /// A posture that was found, refined to the end.
+    pub(super) fn settle(&self, next: &Frame, posture: &Posture) -> Posture {
+        let halvings = HALVINGS[0] + 1..=HALVINGS[1];
+        Posture { concentration: posture.concentration, ..self.refine(&next.fine, &posture.joints, halvings) }
+    }
+
     /// What a place of the tip adds to the log probability.
     pub(super) fn standing_bonus(&self, tip: Place) -> f64 {
-        let bonus =
-            |place| STANDING_BONUS * (-0.5 * (distance(tip, place) / STANDING_SD).powi(2)).exp();
+        let bonus = |place| STANDING_BONUS * (-0.5 * (distance(tip, place) / STANDING_SD).powi(2)).exp();
         self.standing.map_or(0.0, bonus)
     }
 
     /// Climbs from joints near a summit to it.
-    fn refine(&self, level: &Level, joints: &[Place]) -> Posture {
+    fn refine(&self, level: &Level, joints: &[Place], halvings: RangeInclusive<u32>) -> Posture {
         let count = self.links.len();
         let mut unknowns = joints[0].to_vec();
         let steps: Vec<Place> = joints.windows(2).map(|ends| step(ends[0], ends[1])).collect();
@@ -109,7 +117,7 @@ impl Chain {
         let mut first_steps = vec![STEPS[0]; 2];
         first_steps.extend(std::iter::repeat_n(STEPS[1], count));
         first_steps.extend(std::iter::repeat_n(STEPS[2], count));
-        let score = climb(&mut unknowns, &first_steps, HALVINGS, |u| self.score(level, u));
+        let score = climb(&mut unknowns, &first_steps, halvings, |u| self.score(level, u));
         let joints = self.joints(&unknowns);
         let seen = |(i, link): (usize, &Link)| link.likeness(level, joints[i + 1], unknowns[2 + i]);
         let likeness = self.links.iter().enumerate().map(seen).collect();

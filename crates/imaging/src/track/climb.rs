@@ -1,16 +1,19 @@
 //! Hill climbing along the axes, for a handful of unknowns and a cheap, rough score.
 
-/// Moves `unknowns` uphill by `steps`, which are halved `halvings` times, and returns the score reached.
+use std::ops::RangeInclusive;
+
+/// Moves `unknowns` uphill by `steps` halved as often as `halvings` says, from its first to its last number, and returns the
+/// score reached.
 pub(super) fn climb(
     unknowns: &mut [f64],
     steps: &[f64],
-    halvings: u32,
+    halvings: RangeInclusive<u32>,
     score: impl Fn(&[f64]) -> f64,
 ) -> f64 {
     /// Rounds at one step length; the score is bounded, so that a longer climb gains little.
     const ROUNDS: usize = 3;
     let mut best = score(unknowns);
-    for halving in 0..=halvings {
+    for halving in halvings {
         let factor = 0.5f64.powi(halving as i32);
         for _ in 0..ROUNDS {
             let before = best;

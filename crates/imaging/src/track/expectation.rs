@@ -4,37 +4,38 @@
 //! their last turns. The shares below were fitted by ridge regression to the angles of the drawn strides of all gaits
 //! (12 and 24 panels a stride), to the hand-placed points of plate "Sallie Gardner" and to a trot tracked from video
 //! (11 to 23 frames a stride), forwards and backwards in time; a gait left out of the fit is predicted almost as well.
-//! The root mean square error of a cannon at 12 panels a stride is 3 to 7 degrees in the drawn gaits and 20 in the
-//! gallop of 1878, against 10 to 15 and 28 for equal turns.
+//! The root mean square error of a cannon's angle, its gait left out, is 3 to 10 degrees in the drawn gaits at 12 panels
+//! a stride and 20 in the gallop of 1878, against 6 to 16 and 28 for equal turns. A leap is foreseen badly, 20.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 use muybridge_capture::{Keypoint, LimbJoint};
 use muybridge_core::{Limb, Pair, Side, Skeleton};
 
 use super::figure::{Figure, wrapped};
 
-/// Share of the four segments' last turns, root to tip, of the first segment's angle from the vertical, and of the
-/// three bends between segments, in the next turn of each segment; and a constant, radians.
+/// Share of the four segments' last turns, root to tip, of the first segment's angle from square to the trunk, and of the
+/// three bends between segments, in the next turn of each segment; and a constant, radians. Fore, then hind. Turns and
+/// angles are against the line from dock to withers.
 const TURN_SHARES: [[[f64; 9]; 4]; 2] = [
     [
-        [0.27, 0.09, 0.16, -0.01, -0.24, 0.05, 0.01, 0.02, 0.22],
-        [0.13, 0.76, -0.05, 0.02, -0.31, -0.23, 0.14, -0.20, -0.13],
-        [0.34, 0.07, 0.41, 0.17, -0.22, -0.21, -0.25, 0.02, 0.09],
-        [0.19, -0.35, 0.68, 0.32, -0.30, -0.31, -0.15, -0.39, -0.10],
+        [0.29, 0.07, 0.16, 0.00, -0.24, 0.05, 0.00, 0.03, 0.26],
+        [0.12, 0.75, -0.05, 0.01, -0.29, -0.24, 0.13, -0.19, -0.08],
+        [0.38, 0.07, 0.39, 0.18, -0.24, -0.20, -0.25, 0.02, 0.15],
+        [0.24, -0.35, 0.65, 0.33, -0.35, -0.30, -0.13, -0.41, -0.02],
     ],
     [
-        [0.39, 0.04, 0.27, 0.02, -0.20, -0.12, -0.14, -0.03, -0.07],
-        [0.31, 0.41, -0.21, 0.13, -0.27, -0.34, 0.11, 0.12, 0.35],
-        [0.24, -0.06, 0.61, 0.03, -0.23, -0.15, -0.30, -0.10, -0.17],
-        [0.08, 0.13, 0.08, 0.55, -0.22, -0.22, -0.45, -0.38, -0.26],
+        [0.38, 0.04, 0.27, 0.02, -0.21, -0.12, -0.15, -0.03, -0.04],
+        [0.30, 0.40, -0.20, 0.12, -0.26, -0.33, 0.11, 0.12, 0.38],
+        [0.23, -0.05, 0.62, 0.03, -0.24, -0.15, -0.30, -0.10, -0.14],
+        [0.06, 0.13, 0.09, 0.55, -0.21, -0.20, -0.45, -0.38, -0.24],
     ],
 ];
 /// Scatter about that: radians at rest, and more per radian of the limb's last turns (root mean square). Fitted to the
 /// errors for gaits left out, and a fifth wider, which tracks best.
 const SCATTER: [[[f64; 2]; 4]; 2] = [
-    [[0.070, 0.22], [0.077, 0.37], [0.097, 0.37], [0.197, 0.71]],
-    [[0.050, 0.34], [0.096, 0.56], [0.058, 0.40], [0.139, 0.62]],
+    [[0.070, 0.20], [0.074, 0.37], [0.103, 0.37], [0.203, 0.70]],
+    [[0.055, 0.34], [0.097, 0.53], [0.058, 0.38], [0.138, 0.61]],
 ];
 /// Turn between panels where nothing is known of the one before, radians: what 12 panels a stride of a gallop show.
 const LONE_SCATTER: [f64; 4] = [0.30, 0.45, 0.55, 0.80];
@@ -42,13 +43,13 @@ const LONE_SCATTER: [f64; 4] = [0.30, 0.45, 0.55, 0.80];
 const NECK_SCATTER: f64 = 0.17;
 /// Share of a turn of neck and head that goes on.
 const NECK_GOES_ON: f64 = 0.3;
+/// Angle of the line from dock to withers where it is not placed, radians.
+const LEVEL_TRUNK: f64 = -0.16;
 /// Degrees of freedom of Student's distribution of turns: strikes and lift-offs come suddenly.
 const FREEDOM: f64 = 4.0;
 /// Farthest turn that is searched, in scatters, and in radians.
 const REACH: f64 = 5.0;
 const FARTHEST_TURN: f64 = 2.8;
-/// Softness of a joint's limits, radians.
-const LIMIT_SOFTNESS: f64 = 0.15;
 /// Least share of probability of a fetlock's bend, for what none of its habits explains.
 const ODD_BEND: f64 = 1e-6;
 
@@ -58,8 +59,6 @@ pub(super) struct Expectation {
     /// Radians, clockwise from where the animal faces.
     pub(super) angle: f64,
     scatter: f64,
-    /// Least and greatest turn against the segment before it.
-    bend_limits: [f64; 2],
     /// What a fetlock does; empty for other joints.
     habits: Vec<Habit>,
 }
@@ -86,10 +85,8 @@ impl Expectation {
         let off = wrapped(angle - self.angle) / self.scatter;
         let turn = -0.5 * (FREEDOM + 1.0) * (1.0 + off * off / FREEDOM).ln();
         let Some((nearest, earlier)) = before.split_last() else { return turn };
-        let bend = wrapped(angle - nearest);
-        let beyond = (self.bend_limits[0] - bend).max(bend - self.bend_limits[1]).max(0.0) / LIMIT_SOFTNESS;
         let cannon_bend = earlier.last().map_or(0.0, |earlier| wrapped(nearest - earlier));
-        turn - 0.5 * beyond * beyond + self.habitual(bend, cannon_bend)
+        turn + self.habitual(wrapped(angle - nearest), cannon_bend)
     }
 
     fn habitual(&self, bend: f64, cannon_bend: f64) -> f64 {
@@ -106,8 +103,11 @@ impl Expectation {
 
 /// What is expected of each segment of a chain that is whole in the last figure; `pitch` is the trunk's turn since.
 pub(super) fn expectations(figures: &[Figure], chain: &[Keypoint], pitch: f64) -> Vec<Expectation> {
-    let angles = |figure: &Figure| -> Vec<f64> { figure.segments(chain).iter().map(|s| s.angle()).collect() };
     let Some((last, earlier)) = figures.split_last() else { return Vec::new() };
+    let trunk_angle = |figure: &Figure| figure.trunk().map_or(LEVEL_TRUNK, |trunk| trunk.angle());
+    let angles = |figure: &Figure| -> Vec<f64> {
+        figure.segments(chain).iter().map(|segment| segment.angle() - trunk_angle(figure)).collect()
+    };
     let now = angles(last);
     let before = earlier.last().map(angles).filter(|before| before.len() == now.len());
     let whole = match (chain.first(), <[f64; 4]>::try_from(now.as_slice())) {
@@ -125,9 +125,8 @@ pub(super) fn expectations(figures: &[Figure], chain: &[Keypoint], pitch: f64) -
                 _ => [0.0, lone_scatter(chain[i + 1])],
             };
             Expectation {
-                angle: now[i] + turn + pitch,
+                angle: trunk_angle(last) + pitch + now[i] + turn,
                 scatter,
-                bend_limits: whole.map_or([-TAU, TAU], |(pair, _)| bend_limits(pair, i)),
                 habits: whole.filter(|_| i == 3).map_or(Vec::new(), |(pair, now)| fetlock_habits(pair, now)),
             }
         })
@@ -160,18 +159,8 @@ fn cyclic_turn(pair: Pair, segment: usize, now: [f64; 4], before: [f64; 4]) -> [
     [turn, at_rest.hypot(per_turn * pace)]
 }
 
-/// Limits of a segment's turn against the one before; the first one's is not known, because the bone before it is not seen.
-/// Bends of the skeleton are anticlockwise for an animal that faces right.
-fn bend_limits(pair: Pair, segment: usize) -> [f64; 2] {
-    if segment == 0 {
-        return [-TAU, TAU];
-    }
-    let horse = Skeleton::reference();
-    let [low, high] = horse.bones[Limb::new(pair, Side::Left).first_bone() + segment + 1].limits_rad;
-    [-f64::from(high), -f64::from(low)]
-}
-
-/// A fetlock stays as it was, follows the limb through the air, or gives under the load.
+/// A fetlock stays as it was, follows the limb through the air, or gives under the load. Bends of the skeleton are
+/// anticlockwise for an animal that faces right.
 fn fetlock_habits(pair: Pair, now: [f64; 4]) -> Vec<Habit> {
     /// How often each, and the scatter of the first two, radians: they track best.
     const SHARES: [f64; 3] = [0.3, 0.4, 0.3];

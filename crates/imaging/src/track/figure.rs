@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use muybridge_capture::{BodyPoint, KEYPOINT_COUNT, Keypoint, KeypointState, Keypoints, LimbJoint, NearOff};
+use muybridge_capture::{BodyPoint, KEYPOINT_COUNT, Keypoint, Keypoints, LimbJoint, NearOff};
 use muybridge_core::{Limb, Pair, Side, Skeleton, bone};
 
 use super::frame::{Frame, Place, distance};
@@ -15,8 +15,9 @@ const FARTHEST: f64 = 50.0;
 pub(super) const JOINTS: [LimbJoint; 5] =
     [LimbJoint::Root, LimbJoint::Upper, LimbJoint::Middle, LimbJoint::Fetlock, LimbJoint::Hoof];
 /// Points of the back, hind end first.
-pub(super) const BACK: [BodyPoint; 4] = [BodyPoint::Dock, BodyPoint::Croup, BodyPoint::Back, BodyPoint::Withers];
-/// The neck and the four limbs, root to tip. Near and off limb of a pair follow one another.
+pub(super) const BACK: [BodyPoint; 4] =
+    [BodyPoint::Dock, BodyPoint::Croup, BodyPoint::Back, BodyPoint::Withers];
+/// The neck and the four limbs; near and off limb of a pair follow one another.
 pub(super) const CHAINS: usize = 5;
 
 /// The keypoints of a chain, root to tip: chain 0 is the neck.
@@ -123,7 +124,8 @@ impl Figure {
 pub(super) fn height_plate_px(points: &Keypoints) -> Option<f64> {
     let horse = Skeleton::reference();
     let length = |bone: usize| f64::from(horse.bones[bone].length_m);
-    let back = (bone::SPINE..=bone::SPINE_LAST).map(length).sum::<f64>() - f64::from(horse.dock_from_croup_m[0]);
+    let back =
+        (bone::SPINE..=bone::SPINE_LAST).map(length).sum::<f64>() - f64::from(horse.dock_from_croup_m[0]);
     let mut pairs = vec![(Keypoint::Body(BodyPoint::Dock), Keypoint::Body(BodyPoint::Withers), back)];
     for chain in 1..CHAINS {
         let joints = chain_keypoints(chain);
@@ -155,9 +157,4 @@ pub(super) fn faces_left(points: &Keypoints) -> bool {
     let fore = mean(&[&fore[..], &roots(Pair::Fore)].concat());
     let hind = mean(&[&hind[..], &roots(Pair::Hind)].concat());
     matches!((fore, hind), (Some(fore), Some(hind)) if fore < hind)
-}
-
-/// Whether a person or a fit saw the point.
-pub(super) fn is_visible(points: &Keypoints, keypoint: Keypoint) -> bool {
-    points.get(keypoint).is_some_and(|placed| placed.state == KeypointState::Visible)
 }

@@ -9,9 +9,9 @@ use super::frame::{Frame, Place, step};
 use super::template::{Extent, Template};
 use super::trunk::TrunkMotion;
 
-/// Distance of a template's samples, px: finer ones add time and nothing else.
-const COARSE_STEP_PX: f64 = 1.4;
-const FINE_STEP_PX: f64 = 2.6;
+/// Distance of a template's samples, px: finer ones take time and find no more.
+const COARSE_STEP_PX: f64 = 2.0;
+const FINE_STEP_PX: f64 = 2.4;
 /// Standard deviation of a root about where the trunk carries it, body heights: a scapula slides, a withers hardly.
 const LIMB_ROOT_SD: f64 = 0.03;
 const NECK_ROOT_SD: f64 = 0.016;
@@ -22,7 +22,7 @@ const MAY_STAND: f64 = 0.065;
 struct Kind {
     extent: Extent,
     /// Standard deviation of its length between panels, as a share: Sallie Gardner's hand-placed bones have 0.04 to 0.1,
-    /// drawn ones none.
+    /// drawn ones none; a neck stretches.
     length_sd: f64,
     /// Weight of one unit of likeness, in units of log probability: what lies within the trunk looks like nothing much.
     weight: f64,
@@ -36,7 +36,7 @@ fn kind(distal: Keypoint) -> Kind {
         weight,
     };
     match distal {
-        Keypoint::Body(_) => kind(0.12, 0.04, 0.04, 17.6),
+        Keypoint::Body(_) => kind(0.12, 0.04, 0.08, 17.6),
         Keypoint::Limb(_, _, LimbJoint::Root | LimbJoint::Upper) => kind(0.075, 0.0, 0.04, 8.8),
         Keypoint::Limb(_, _, LimbJoint::Middle) => kind(0.066, 0.0, 0.04, 15.4),
         Keypoint::Limb(_, _, LimbJoint::Fetlock) => kind(0.04, 0.0, 0.04, 17.6),
@@ -121,7 +121,8 @@ impl Seen<'_> {
             return None;
         }
         let (was, now) = (before.place(tip)?, last.place(tip)?);
-        let lowest = Keypoint::all().filter_map(|k| last.place(k)).map(|place| place[1]).fold(now[1], f64::max);
+        let lowest =
+            Keypoint::all().filter_map(|k| last.place(k)).map(|place| place[1]).fold(now[1], f64::max);
         if now[1] < lowest - MAY_STAND {
             return None;
         }

@@ -57,8 +57,9 @@ impl Stage {
         let margin = (BEYOND * level.px_per_height) as i32;
         let reach_px = link.length * level.px_per_height;
         let bounds = [0, 1].map(|axis| {
-            let steps = angles.iter().map(|angle| reach_px * if axis == 0 { angle.cos() } else { angle.sin() });
-            let most = level.size_px()[axis] + margin;
+            let steps =
+                angles.iter().map(|angle| reach_px * if axis == 0 { angle.cos() } else { angle.sin() });
+            let most = level.size_px[axis] + margin;
             let first = low[axis].saturating_add(steps.clone().fold(f64::INFINITY, f64::min).floor() as i32);
             let last = high[axis].saturating_add(steps.fold(f64::NEG_INFINITY, f64::max).ceil() as i32);
             let first = first.clamp(-margin, most);
@@ -160,7 +161,9 @@ impl Stage {
                 } else {
                     let looks = link.coarse.iter().zip(&offsets);
                     *score += weight
-                        * looks.map(|(t, offsets)| t.likeness_at_pixel(level, &offsets[k], pixel)).sum::<f32>();
+                        * looks
+                            .map(|(t, offsets)| t.likeness_at_pixel(level, &offsets[k], pixel))
+                            .sum::<f32>();
                 }
             }
         }

@@ -43,9 +43,8 @@ pub(super) fn choose(limbs: &[Candidates]) -> Vec<Choice> {
     let Some((best, top)) = choices.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
     let choice = |(limb, candidates): (usize, &Candidates)| {
         let tip = |posture: usize| candidates.postures[posture].tip();
-        let same = |posture: usize| {
-            tip(posture).zip(tip(best[limb])).is_some_and(|(a, b)| distance(a, b) < SAME)
-        };
+        let same =
+            |posture: usize| tip(posture).zip(tip(best[limb])).is_some_and(|(a, b)| distance(a, b) < SAME);
         let (mut alike, mut all) = (0.0, 0.0);
         for (chosen, score) in &choices {
             let probability = (score - top).exp();

@@ -7,8 +7,8 @@ use super::template::{Extent, Template};
 
 /// What of the trunk is compared, around the line of the back: a little above it, and down to the belly.
 const EXTENT: Extent = Extent { ends: [0.0, 0.04], sides: [0.1, 0.33] };
-/// Distance of samples, px: the trunk is large.
-const STEP_PX: f64 = 3.0;
+/// Distance of samples in the search and in the refinement, px: the trunk is large.
+const SAMPLE_STEPS_PX: [f64; 2] = [4.0, 3.0];
 /// Weight of one unit of likeness, in units of log probability.
 const LIKENESS_WEIGHT: f64 = 30.0;
 /// How far the trunk strays from where it is expected in a panel, body heights: cameras of a battery fire a little early or
@@ -61,12 +61,14 @@ impl TrunkMotion {
             let nearest = expected.iter().map(off).fold(f64::INFINITY, f64::min);
             -0.5 * (nearest * nearest + (pitch / PITCH_SD).powi(2))
         };
-        let template = |level: &Level| Template::new(level, trunk, EXTENT, STEP_PX, &[]);
-        let start = search(&template(&last.coarse), &next.coarse, trunk.angle(), &prior);
-        let fine = template(&last.fine);
+        let template = |level: &Level, step_px| Template::new(level, trunk, EXTENT, step_px, &[]);
+        let start = search(&template(&last.coarse, SAMPLE_STEPS_PX[0]), &next.coarse, trunk.angle(), &prior);
+        let fine = template(&last.fine, SAMPLE_STEPS_PX[1]);
         let likeness = |u: &[f64]| fine.likeness(&next.fine, [u[0], u[1]], trunk.angle() + u[2]);
         let mut unknowns = start.unwrap_or([trunk.to[0], trunk.to[1], 0.0]);
-        climb(&mut unknowns, &STEPS, HALVINGS, |u| LIKENESS_WEIGHT * likeness(u) + prior([u[0], u[1], u[2]]));
+        climb(&mut unknowns, &STEPS, 0..=HALVINGS, |u| {
+            LIKENESS_WEIGHT * likeness(u) + prior([u[0], u[1], u[2]])
+        });
         let [x, y, pitch] = unknowns;
         Self { from: trunk.to, to: [x, y], pitch, likeness: likeness(&unknowns) }
     }
@@ -79,12 +81,14 @@ fn search(
     angle: f64,
     prior: &impl Fn([f64; 3]) -> f64,
 ) -> Option<[f64; 3]> {
-    let [width, height] = level.size_px();
+    let [width, height] = level.size_px;
     let mut best = None;
     let mut top = f64::NEG_INFINITY;
     for pitch in PITCHES {
         let offsets = template.offsets(angle + pitch);
-        for (x, y) in (0..height).step_by(STRIDE).flat_map(|y| (0..width).step_by(STRIDE).map(move |x| (x, y))) {
+        for (x, y) in
+            (0..height).step_by(STRIDE).flat_map(|y| (0..width).step_by(STRIDE).map(move |x| (x, y)))
+        {
             let place = level.place_of_pixel([x, y]);
             let unknowns = [place[0], place[1], pitch];
             let expected = prior(unknowns);

@@ -24,6 +24,8 @@ const LARGEST_PX: u64 = 200_000_000;
 const PAPER: Rgb<u8> = Rgb([236, 232, 222]);
 const INK: Rgb<u8> = Rgb([40, 36, 30]);
 const SILHOUETTE: Rgb<u8> = Rgb([255, 214, 10]);
+/// Inside of a silhouette on blank paper.
+const SHADE: Rgb<u8> = Rgb([120, 112, 102]);
 const GROUND: Rgb<u8> = Rgb([60, 140, 255]);
 const UPRIGHT: Rgb<u8> = Rgb([40, 220, 90]);
 const HORIZONTAL: Rgb<u8> = Rgb([90, 190, 160]);
@@ -187,6 +189,9 @@ fn draw_panel(canvas: &mut Canvas, at: [u32; 2], seen: &Seen, i: usize, layers: 
         imageops::replace(&mut canvas.picture, &photograph, i64::from(at[0]), i64::from(at[1]));
     }
     let has = |layer| layers.contains(&layer);
+    if has(Layer::Silhouette) {
+        draw_silhouette(canvas, at, &silhouette.mask, drawing);
+    }
     let mut lines: Vec<(&Line, Rgb<u8>)> = Vec::new();
     if has(Layer::Horizontals) {
         lines.extend(wall.horizontals.iter().map(|line| (line, HORIZONTAL)));
@@ -199,9 +204,6 @@ fn draw_panel(canvas: &mut Canvas, at: [u32; 2], seen: &Seen, i: usize, layers: 
     }
     for (line, colour) in lines {
         canvas.line(place(line.ends_px[0]), place(line.ends_px[1]), 1.5, colour);
-    }
-    if has(Layer::Silhouette) {
-        draw_outline(canvas, at, &silhouette.mask);
     }
     if has(Layer::Hooves) {
         for hoof in hoof_candidates(silhouette, wall.ground.as_ref()) {
@@ -219,12 +221,15 @@ fn draw_panel(canvas: &mut Canvas, at: [u32; 2], seen: &Seen, i: usize, layers: 
     canvas.text([f64::from(at[0]), f64::from(at[1] + view.image.height()) + 4.0], &caption, INK);
 }
 
-/// The pixels just outside a mask.
-fn draw_outline(canvas: &mut Canvas, [left, top]: [u32; 2], mask: &GrayImage) {
+/// The pixels just outside a mask; on blank paper its inside, too.
+fn draw_silhouette(canvas: &mut Canvas, [left, top]: [u32; 2], mask: &GrayImage, drawing: bool) {
     let grown = grayscale_dilate(mask, &Mask::diamond(1));
-    for (x, y, pixel) in grown.enumerate_pixels() {
-        if pixel.0[0] > 127 && mask.get_pixel(x, y).0[0] <= 127 {
-            canvas.picture.put_pixel(left + x, top + y, SILHOUETTE);
+    for (x, y, pixel) in grown.enumerate_pixels().filter(|(_, _, pixel)| pixel.0[0] > 127) {
+        let inside = mask.get_pixel(x, y).0[0] > 127;
+        match (inside, drawing) {
+            (false, _) => canvas.picture.put_pixel(left + x, top + y, SILHOUETTE),
+            (true, true) => canvas.picture.put_pixel(left + x, top + y, SHADE),
+            (true, false) => {}
         }
     }
 }

@@ -105,7 +105,7 @@ pub(super) fn find_panels(pictures: &[GrayImage]) -> anyhow::Result<Panels> {
     let (mut panels, mut confidence, mut doubts) = (Vec::new(), Vec::new(), Vec::new());
     for (image, picture) in pictures.iter().enumerate() {
         let found = split(picture);
-        if pictures.len() > 1 && found.panels.len() != 1 {
+        if pictures.len() > 1 && !(found.is_certain() && found.panels.len() == 1) {
             // A frame of a folder shows one photograph, whatever is in it.
             panels.push(whole(panels.len() as u32 + 1, image, picture));
             confidence.push(1.0);
