@@ -92,7 +92,8 @@ fn views() -> (String, Vec<PanelView>) {
     };
     if let Some(folder) = shared_folder().map(|folder| folder.join("plates/flode-holden-614")) {
         let paths: Vec<PathBuf> = frames(&folder).unwrap();
-        let pictures = paths.iter().take(SILHOUETTES).map(|path| load_gray(path, LoadLimits::default()).unwrap());
+        let pictures =
+            paths.iter().take(SILHOUETTES).map(|path| load_gray(path, LoadLimits::default()).unwrap());
         return ("plate 614, Flode Holden".into(), pictures.map(|picture| whole(&picture)).collect());
     }
     println!("no shared plates: specimens instead of a real plate");

@@ -37,18 +37,27 @@ fn a_fetched_plate_has_a_manifest_with_hash_and_panels() {
     let picture = workspace.path("cache/animal-locomotion-616.jpg");
     assert_eq!(muybridge_capture::hash_file(&picture).unwrap(), found.images[0].sha256);
     assert!(run.stdout.contains(&found.images[0].sha256), "{}", run.stdout);
-    assert!(!workspace.path("plates/animal-locomotion-616.jpg").exists(), "photographs stay out of the repository");
+    assert!(
+        !workspace.path("plates/animal-locomotion-616.jpg").exists(),
+        "photographs stay out of the repository"
+    );
 
     // A second time nothing is asked for, and what a person has written into the manifest stays.
     let requests = server.requests().len();
-    workspace.write("plates/animal-locomotion-616.json", &manifest_text.replace("\"facing\": null", "\"facing\": \"left\""));
+    workspace.write(
+        "plates/animal-locomotion-616.json",
+        &manifest_text.replace("\"facing\": null", "\"facing\": \"left\""),
+    );
     workspace.run("muybridge", &["plates", "fetch", "616"]).expect_code(0);
     assert_eq!(server.requests().len(), requests);
     assert!(workspace.text("plates/animal-locomotion-616.json").contains("\"facing\": \"left\""));
 
     // Everything else takes the plate by its number.
     let run = workspace.run("muybridge", &["plates", "split", "616", "--out", "panels.png"]).expect_code(0);
-    assert!(run.stdout.lines().filter(|line| line.trim_start().starts_with(|c: char| c.is_ascii_digit())).count() == 12);
+    assert!(
+        run.stdout.lines().filter(|line| line.trim_start().starts_with(|c: char| c.is_ascii_digit())).count()
+            == 12
+    );
     workspace.run("muybridge", &["plates", "show", "616", "--out", "seen.png"]).expect_code(0);
     for name in ["panels.png", "seen.png"] {
         assert!(image::open(workspace.path(name)).unwrap().width() > 400);
@@ -62,9 +71,10 @@ fn a_plate_that_cannot_be_had_is_named_and_leaves_nothing() {
         let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
         format!("http://127.0.0.1:{}/iiif/x", listener.local_addr().unwrap().port())
     };
-    let html = Server::start_with_faults(kept(Gait::Trot).picture, Service::default(), |request: &Request| {
-        request.path.ends_with(".jpg").then(|| Fault::Content("text/html", b"<!DOCTYPE html>".to_vec()))
-    });
+    let html =
+        Server::start_with_faults(kept(Gait::Trot).picture, Service::default(), |request: &Request| {
+            request.path.ends_with(".jpg").then(|| Fault::Content("text/html", b"<!DOCTYPE html>".to_vec()))
+        });
     for (address, says) in [(away.as_str(), "127.0.0.1"), (html.address().as_str(), "DOCTYPE")] {
         let workspace = Workspace::new();
         catalogue(&workspace, address);
@@ -92,7 +102,13 @@ fn a_scan_or_a_folder_of_frames_of_ones_own_is_a_plate() {
     std::fs::create_dir(workspace.path("frames")).unwrap();
     for (n, panel) in (8..).zip(&specimen.truth.panels[..4]) {
         let [[left, top], _, [right, bottom], _] = panel.quad_px.map(|corner| corner.map(|v| v as u32));
-        let frame = image::imageops::crop_imm(&specimen.picture, left + 4, top + 4, right - left - 8, bottom - top - 8);
+        let frame = image::imageops::crop_imm(
+            &specimen.picture,
+            left + 4,
+            top + 4,
+            right - left - 8,
+            bottom - top - 8,
+        );
         frame.to_image().save(workspace.path(&format!("frames/frame-{n}.png"))).unwrap();
     }
     add(&["frames", "--gait", "trot"]).expect_code(0);

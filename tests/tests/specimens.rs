@@ -41,7 +41,8 @@ fn on_all_cores<T: Send>(seeds: std::ops::Range<u64>, work: impl Fn(u64) -> T + 
     let work = &work;
     let mut results: Vec<(u64, T)> = std::thread::scope(|scope| {
         let share = |thread: u64| seeds.clone().filter(move |seed| seed % threads == thread);
-        let run = |thread| scope.spawn(move || share(thread).map(|seed| (seed, work(seed))).collect::<Vec<_>>());
+        let run =
+            |thread| scope.spawn(move || share(thread).map(|seed| (seed, work(seed))).collect::<Vec<_>>());
         let running: Vec<_> = (0..threads).map(run).collect();
         running.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
     });
@@ -71,15 +72,17 @@ fn panels_of_real_plates_are_found_without_a_hint() {
         println!("skipped: no shared plates");
         return;
     };
-    let sallie: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(repository().join("plates/sallie-gardner-1878.json")).unwrap())
-            .unwrap();
+    let sallie: serde_json::Value = serde_json::from_str(
+        &std::fs::read_to_string(repository().join("plates/sallie-gardner-1878.json")).unwrap(),
+    )
+    .unwrap();
     let by_hand = |value: &serde_json::Value| serde_json::from_value::<[Point; 4]>(value.clone()).unwrap();
     let sallie: Vec<[Point; 4]> =
         sallie["panels"].as_array().unwrap().iter().map(|panel| by_hand(&panel["quad_px"])).collect();
-    let daisy: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(repository().join("tests/data/daisy-panels.json")).unwrap())
-            .unwrap();
+    let daisy: serde_json::Value = serde_json::from_str(
+        &std::fs::read_to_string(repository().join("tests/data/daisy-panels.json")).unwrap(),
+    )
+    .unwrap();
     let daisy: Vec<[Point; 4]> = daisy["quads_px"].as_array().unwrap().iter().map(by_hand).collect();
     for (name, truth) in [("sallie-gardner-1878", sallie), ("daisy-galloping", daisy)] {
         let path = shared.join("plates").join(name).join("plate.jpg");
@@ -145,7 +148,8 @@ impl Seen {
         let found = &self.walls[panel].uprights;
         let near = |line: &Line, ends: [Point; 2]| self.off_px(panel, line, ends) <= 2.0;
         let hit = truth.iter().filter(|upright| found.iter().any(|line| near(line, upright.ends_px))).count();
-        let stray = found.iter().filter(|line| !truth.iter().any(|upright| near(line, upright.ends_px))).count();
+        let stray =
+            found.iter().filter(|line| !truth.iter().any(|upright| near(line, upright.ends_px))).count();
         [truth.len(), hit, stray]
     }
 }
@@ -257,9 +261,20 @@ fn tracked_hooves(seen: &Seen) -> Vec<TrackedHoof> {
 
 /// Probability that a good hoof has a higher quality than a bad one.
 fn separation(hooves: &[TrackedHoof], most_error: f64) -> f64 {
-    let (good, bad): (Vec<&TrackedHoof>, Vec<&TrackedHoof>) = hooves.iter().partition(|h| h.error <= most_error);
+    let (good, bad): (Vec<&TrackedHoof>, Vec<&TrackedHoof>) =
+        hooves.iter().partition(|h| h.error <= most_error);
     let pairs = good.iter().flat_map(|g| bad.iter().map(move |b| (g.quality, b.quality)));
-    let wins: f64 = pairs.map(|(g, b)| if g > b { 1.0 } else if g == b { 0.5 } else { 0.0 }).sum();
+    let wins: f64 = pairs
+        .map(|(g, b)| {
+            if g > b {
+                1.0
+            } else if g == b {
+                0.5
+            } else {
+                0.0
+            }
+        })
+        .sum();
     wins / (good.len() * bad.len()) as f64
 }
 
@@ -274,7 +289,12 @@ fn hooves_are_tracked_and_bad_tracks_known() {
     }
     let good = all.iter().filter(|hoof| hoof.error <= 0.02).count() as f64 / all.len() as f64;
     let separation = separation(&all, 0.02);
-    println!("{:.1} % of {} hooves; quality tells good from bad in {:.1} % of pairs", 100.0 * good, all.len(), 100.0 * separation);
+    println!(
+        "{:.1} % of {} hooves; quality tells good from bad in {:.1} % of pairs",
+        100.0 * good,
+        all.len(),
+        100.0 * separation
+    );
     assert!(good >= 0.80, "{good:.3}");
     assert!(separation >= 0.80, "{separation:.3}");
 }
@@ -288,15 +308,22 @@ fn kept_specimens_are_what_the_program_draws() {
         let truth: SpecimenTruth = read_json(&folder.join(format!("{id}.truth.json")), 1).unwrap();
         for (kept, drawn) in truth.panels.iter().zip(&specimen.truth.panels) {
             for keypoint in Keypoint::all() {
-                let (a, b) = (kept.keypoints.place(keypoint).unwrap(), drawn.keypoints.place(keypoint).unwrap());
+                let (a, b) =
+                    (kept.keypoints.place(keypoint).unwrap(), drawn.keypoints.place(keypoint).unwrap());
                 // Rounded to a hundredth; another processor may round otherwise.
-                assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 0.03, "{id}, {keypoint}: run `muybridge plates specimen`");
+                assert!(
+                    (a[0] - b[0]).hypot(a[1] - b[1]) < 0.03,
+                    "{id}, {keypoint}: run `muybridge plates specimen`"
+                );
             }
         }
         let picture = image::open(folder.join(format!("{id}.jpg"))).unwrap().to_luma8();
         assert_eq!(picture.dimensions(), specimen.picture.dimensions(), "{id}");
-        let difference: f64 =
-            picture.pixels().zip(specimen.picture.pixels()).map(|(a, b)| f64::from(a.0[0].abs_diff(b.0[0]))).sum();
+        let difference: f64 = picture
+            .pixels()
+            .zip(specimen.picture.pixels())
+            .map(|(a, b)| f64::from(a.0[0].abs_diff(b.0[0])))
+            .sum();
         let mean = difference / f64::from(picture.width() * picture.height());
         assert!(mean < 4.0, "{id}: {mean:.2} grey values apart; run `muybridge plates specimen`");
     }

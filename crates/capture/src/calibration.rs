@@ -5,9 +5,7 @@ use muybridge_core::SpeedSource;
 use crate::annotation::{Annotation, PanelAnnotation, PanelUse};
 use crate::keypoint::{BodyPoint, Keypoint};
 use crate::line::GroundLine;
-use crate::manifest::{
-    Calibration, Facing, KnownLength, Manifest, Parallax, Plane, Position, ScaleSource,
-};
+use crate::manifest::{Calibration, Facing, KnownLength, Manifest, Parallax, Plane, Position, ScaleSource};
 use crate::parallax::scale_ratio_from_stance;
 use crate::timing::panel_times;
 

@@ -34,8 +34,7 @@ struct StancePair {
 
 /// Scale on the track over scale on the wall; none when no hoof is labelled stance and seen in two neighbouring panels.
 pub(crate) fn scale_ratio_from_stance(context: &Context<'_>, length: &KnownLength) -> Option<Estimate> {
-    let Position::CameraSpacing { spacing_m, first_axis_mark } = &context.calibration.position
-    else {
+    let Position::CameraSpacing { spacing_m, first_axis_mark } = &context.calibration.position else {
         return None;
     };
     let mut pairs = Vec::new();

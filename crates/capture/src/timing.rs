@@ -133,8 +133,7 @@ fn interval_times(context: &Context<'_>, panels: &[&PanelAnnotation]) -> Vec<f64
 }
 
 fn stride_times(context: &Context<'_>, panels: &[&PanelAnnotation]) -> Result<Vec<f64>, CalibrationError> {
-    let stride_s =
-        context.calibration.time.stride_time_s.as_ref().map_or(f64::NAN, |known| known.value);
+    let stride_s = context.calibration.time.stride_time_s.as_ref().map_or(f64::NAN, |known| known.value);
     let closes = context.annotation.stride.closes_after_panels.ok_or_else(|| {
         CalibrationError::Contradiction(
             "time is driven by the stride time, so stride.closes_after_panels must say how many panels it spans".into(),

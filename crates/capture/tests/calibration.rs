@@ -187,7 +187,8 @@ fn distances_a_ratio_marks_on_the_track_and_the_withers_give_the_same_scale() {
     manifest.calibration.as_mut().unwrap().scale.known_length =
         length(Plane::Wall(Parallax::Distances { camera_to_track_m: 10.0, camera_to_wall_m: 12.0 }));
     assert_cameras(&truth, &manifest, 1e-9);
-    manifest.calibration.as_mut().unwrap().scale.known_length = length(Plane::Wall(Parallax::Ratio(known(RATIO, 0.02))));
+    manifest.calibration.as_mut().unwrap().scale.known_length =
+        length(Plane::Wall(Parallax::Ratio(known(RATIO, 0.02))));
     assert_cameras(&truth, &manifest, 1e-9);
     manifest.calibration.as_mut().unwrap().scale.driven_by = ScaleSource::WithersHeight;
     assert_cameras(&truth, &manifest, 1e-9);

@@ -157,9 +157,9 @@ impl Seen {
     }
 }
 
-fn specimen(style: SpecimenStyle, facing: Facing) -> (Specimen, Seen) {
+fn specimen(style: &SpecimenStyle, facing: Facing) -> (Specimen, Seen) {
     let poses = (style.columns * style.rows) as usize;
-    let specimen = draw(&swung_legs(poses, facing), &style);
+    let specimen = draw(&swung_legs(poses, facing), style);
     let quads: Vec<[Point; 4]> = specimen.truth.panels.iter().map(|panel| panel.quad_px).collect();
     let seen = Seen::new(&specimen.picture, &quads);
     (specimen, seen)
@@ -178,7 +178,7 @@ fn specimens_of_several_looks_are_seen() {
         ),
     ];
     for (style, facing) in looks {
-        let (specimen, seen) = specimen(style, facing);
+        let (specimen, seen) = specimen(&style, facing);
         for (panel, truth) in specimen.truth.panels.iter().enumerate() {
             let (view, horse) = (&seen.views[panel], &seen.horses[panel]);
             let iou = iou(&horse.mask, |x, y| {

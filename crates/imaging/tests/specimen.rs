@@ -1,5 +1,7 @@
 //! Specimens: what the truth says is what the picture shows, and the documents made from it calibrate to the same cameras.
 
+#![allow(clippy::unwrap_used, reason = "a test stops at the first thing it cannot do")]
+
 use image::GrayImage;
 use muybridge_capture::{
     BodyPoint, Facing, Keypoint, KeypointState, NearOff, Plate, StanceLabel, calibrate, hash_file,

@@ -1,5 +1,7 @@
 //! Tracking on drawn plates, on "Sallie Gardner", and on pictures that show nothing.
 
+#![allow(clippy::unwrap_used, reason = "a test stops at the first thing it cannot do")]
+
 use std::path::{Path, PathBuf};
 
 use image::{GrayImage, Luma};
@@ -48,8 +50,8 @@ fn shots(specimen: &Specimen) -> Vec<Shot> {
     specimen.truth.panels.iter().map(shot).collect()
 }
 
-fn drawn(facing: Facing, style: SpecimenStyle) -> (Vec<Shot>, f64) {
-    let specimen = draw(&swung_legs(12, facing), &style);
+fn drawn(facing: Facing, style: &SpecimenStyle) -> (Vec<Shot>, f64) {
+    let specimen = draw(&swung_legs(12, facing), style);
     let height_px = specimen.truth.withers_height_m * specimen.truth.panels[0].camera.px_per_m;
     (shots(&specimen), height_px)
 }
@@ -58,7 +60,7 @@ fn drawn(facing: Facing, style: SpecimenStyle) -> (Vec<Shot>, f64) {
 fn hooves_of_a_drawn_trot_are_found_a_panel_ahead() {
     let looks = [SpecimenStyle::default(), SpecimenStyle::animal_locomotion()];
     for (facing, style) in [Facing::Right, Facing::Left].into_iter().zip(looks) {
-        let (shots, height_px) = drawn(facing, style);
+        let (shots, height_px) = drawn(facing, &style);
         let mut all = Vec::new();
         for next in [3, 6, 8] {
             let known = [shots[next - 2].known(), shots[next - 1].known()];
@@ -71,7 +73,7 @@ fn hooves_of_a_drawn_trot_are_found_a_panel_ahead() {
 
 #[test]
 fn tracking_backwards_is_tracking_with_the_order_turned_round() {
-    let (shots, height_px) = drawn(Facing::Right, SpecimenStyle::default());
+    let (shots, height_px) = drawn(Facing::Right, &SpecimenStyle::default());
     let found = track(&[shots[6].known(), shots[5].known()], &shots[4].view, None);
     let errors = errors(&found, &shots[4].points, height_px, LimbJoint::Fetlock);
     assert!(share_within(&errors, 0.03) >= 0.75, "{errors:.3?}");
@@ -119,7 +121,7 @@ fn sallie_gardners_limbs_are_followed_a_panel_ahead() {
 
 #[test]
 fn a_plain_panel_gets_proposals_that_say_they_are_worthless() {
-    let (shots, _) = drawn(Facing::Right, SpecimenStyle::default());
+    let (shots, _) = drawn(Facing::Right, &SpecimenStyle::default());
     let mut plain = shots[4].view.clone();
     plain.image.pixels_mut().for_each(|pixel| pixel.0 = [150]);
     let proposals = propose(&[shots[2].known(), shots[3].known()], &plain, None);
@@ -133,7 +135,7 @@ fn a_plain_panel_gets_proposals_that_say_they_are_worthless() {
 
 #[test]
 fn covered_limbs_have_less_quality_than_seen_ones() {
-    let (shots, _) = drawn(Facing::Right, SpecimenStyle::default());
+    let (shots, _) = drawn(Facing::Right, &SpecimenStyle::default());
     let mut covered = shots[6].view.clone();
     let panel_px = |keypoint| covered.transform.panel_from_plate(shots[6].points.place(keypoint).unwrap());
     let [middle_x, _] = panel_px(Keypoint::Body(BodyPoint::Back));
@@ -158,7 +160,7 @@ fn covered_limbs_have_less_quality_than_seen_ones() {
 
 #[test]
 fn points_that_cannot_be_tracked_are_carried_along() {
-    let (mut shots, _) = drawn(Facing::Right, SpecimenStyle::default());
+    let (mut shots, _) = drawn(Facing::Right, &SpecimenStyle::default());
     let hoof = Keypoint::hoof(NearOff::Near, Pair::Fore);
     let lone = shots[5].points.get(hoof).copied();
     for joint in [LimbJoint::Root, LimbJoint::Upper, LimbJoint::Middle, LimbJoint::Fetlock] {
@@ -174,7 +176,7 @@ fn points_that_cannot_be_tracked_are_carried_along() {
 
 #[test]
 fn nothing_at_all_is_no_reason_to_fail() {
-    let (shots, _) = drawn(Facing::Left, SpecimenStyle::default());
+    let (shots, _) = drawn(Facing::Left, &SpecimenStyle::default());
     assert!(track(&[], &shots[0].view, None).is_empty());
     let nothing = Keypoints::default();
     let empty = PanelPoints { view: &shots[0].view, silhouette: None, points: &nothing };

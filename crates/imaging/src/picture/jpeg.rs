@@ -20,7 +20,9 @@ pub(crate) fn has_end(mut jpeg: impl BufRead) -> Result<bool> {
             // A byte 0xff of the coded picture, and markers without a segment: start of image, TEM, restart.
             0x00 | 0x01 | 0xd0..=0xd8 => {}
             _ => {
-                let (Some(high), Some(low)) = (next_byte(&mut jpeg)?, next_byte(&mut jpeg)?) else { return Ok(false) };
+                let (Some(high), Some(low)) = (next_byte(&mut jpeg)?, next_byte(&mut jpeg)?) else {
+                    return Ok(false);
+                };
                 // The length counts its own two bytes.
                 let rest = u64::from(u16::from_be_bytes([high, low])).saturating_sub(2);
                 copy(&mut jpeg.by_ref().take(rest), &mut sink())?;

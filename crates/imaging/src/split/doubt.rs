@@ -1,8 +1,10 @@
 //! What speaks against the panels that were found.
 
+use std::cmp::Ordering;
+
 use super::layout::SHAPES;
 use super::overlap::iou;
-use super::reading::{LEAST_SCORE, Outline, Reading};
+use super::reading::{Outline, Reading};
 
 /// Least share of a side that must have been seen; less is a guess from the other panels.
 const LEAST_SIDE: f64 = 0.3;
@@ -14,9 +16,11 @@ const UNLIKE: f64 = 0.055;
 const OVERLAP: f64 = 0.01;
 /// Overlap of the same panel in two readings below which it is not in the same place.
 const SAME_PLACE: f64 = 0.9;
-/// Least score of a reading with fewer panels, against the best, at which it may be the right one: every plate with thin
-/// gutters has one, while of those with more panels all are of interest.
+/// Least score of another reading, against the best, at which it may be the right one: of one with fewer panels, which every
+/// plate with thin gutters has; of one with as many in other places; and of one with more.
 const COARSER_RIVAL: f64 = 0.9;
+const EQUAL_RIVAL: f64 = 0.8;
+const FINER_RIVAL: f64 = 0.7;
 
 /// A side of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,7 +147,11 @@ pub(super) fn doubts(reading: &Reading, others: &[Reading]) -> Vec<Doubt> {
 fn rivals(reading: &Reading, others: &[Reading]) -> Vec<Doubt> {
     let found = reading.outlines.len();
     let rivals = others.iter().filter(|other| {
-        let least = if other.outlines.len() < found { COARSER_RIVAL } else { LEAST_SCORE };
+        let least = match other.outlines.len().cmp(&found) {
+            Ordering::Less => COARSER_RIVAL,
+            Ordering::Equal => EQUAL_RIVAL,
+            Ordering::Greater => FINER_RIVAL,
+        };
         other.is_credible() && has_usual_shape(other) && other.score >= least * reading.score
     });
     let mut doubts = Vec::new();

@@ -14,9 +14,9 @@ use super::turn::{Turn, tilt_rad, upright};
 use super::{Point, median};
 
 /// Most layouts whose edges are looked for on the plate.
-const MOST_READINGS: usize = 6;
+const MOST_READINGS: usize = 10;
 /// Share of the best score below which a reading is of no interest.
-pub(super) const LEAST_SCORE: f64 = 0.5;
+const LEAST_SCORE: f64 = 0.5;
 /// Power of what is seen of the outlines in a reading's score.
 const SEEN_POWER: i32 = 2;
 /// Share of the outlines that may be seen less with a purer mount: some of what was seen may have been the page's border.

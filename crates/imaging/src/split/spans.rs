@@ -8,9 +8,9 @@ pub(super) const GUTTER: f64 = 0.92;
 pub(super) const THIN_GUTTER: f64 = 0.8;
 /// What a panel loses of its worth by having gutters inside, in lengths of the gutters: a dark line across a photograph is
 /// swallowed where that makes panels alike, a gutter is not.
-const SWALLOWED: f64 = 3.0;
+const SWALLOWED: f64 = 1.5;
 /// Width of gutter, in panel sizes, for which it loses twice as much: wider than a line in a photograph.
-const WIDE: f64 = 0.005;
+const WIDE: f64 = 0.015;
 /// Worth of panels of an unlikely size.
 const UNLIKELY: f64 = 0.5;
 /// Relative departure from the common size at which a panel is worth nothing.

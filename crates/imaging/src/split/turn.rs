@@ -10,7 +10,7 @@ const STEEPEST_DEG: f64 = 5.0;
 /// Steps of the first and of the second search, degrees; pixels of which one is looked at, each way.
 const COARSE_STEP_DEG: f64 = 0.25;
 const COARSE_EVERY: usize = 5;
-const FINE_STEP_DEG: f64 = 0.05;
+const FINE_STEP_DEG: f64 = 0.1;
 const FINE_EVERY: usize = 3;
 /// What a turned mask has beyond the picture's border: mount, but not counted where its extent is asked for.
 pub(super) const BEYOND: u8 = 1;

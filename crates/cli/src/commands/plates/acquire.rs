@@ -97,8 +97,9 @@ impl Places {
             .clone()
             .or_else(cache_folder)
             .context("this system has no cache folder; name one with --cache")?;
-        std::fs::create_dir_all(&folder)
-            .with_context(|| format!("{}: cannot be made; name another folder with --cache", folder.display()))?;
+        std::fs::create_dir_all(&folder).with_context(|| {
+            format!("{}: cannot be made; name another folder with --cache", folder.display())
+        })?;
         Ok(folder)
     }
 
@@ -182,7 +183,9 @@ fn bar(number: u32) -> ProgressBar {
 
 fn show(bar: &ProgressBar, progress: &Progress) {
     match progress {
-        Progress::Described { width_px, height_px } => bar.set_message(format!("{width_px} x {height_px} px")),
+        Progress::Described { width_px, height_px } => {
+            bar.set_message(format!("{width_px} x {height_px} px"));
+        }
         Progress::Bytes { received, total } => {
             if let Some(total) = total {
                 bar.set_length(*total);
@@ -245,15 +248,21 @@ fn plate_image(path: &Path, file: &str) -> anyhow::Result<PlateImage> {
 fn record(path: &Path, mut manifest: Manifest, files: &[PathBuf]) -> anyhow::Result<()> {
     if path.exists() {
         let known = Manifest::read(path)?;
-        let hashes = |manifest: &Manifest| manifest.images.iter().map(|i| i.sha256.clone()).collect::<Vec<_>>();
+        let hashes =
+            |manifest: &Manifest| manifest.images.iter().map(|i| i.sha256.clone()).collect::<Vec<_>>();
         if hashes(&known) != hashes(&manifest) {
-            bail!("{}: speaks of another picture (its hash differs); move the manifest away to start anew", path.display());
+            bail!(
+                "{}: speaks of another picture (its hash differs); move the manifest away to start anew",
+                path.display()
+            );
         }
         println!("{}: kept as it is, of the same picture", path.display());
         return Ok(());
     }
-    let pictures: Vec<GrayImage> =
-        files.iter().map(|file| Ok(load_gray(file, LoadLimits::default())?)).collect::<anyhow::Result<_>>()?;
+    let pictures: Vec<GrayImage> = files
+        .iter()
+        .map(|file| Ok(load_gray(file, LoadLimits::default())?))
+        .collect::<anyhow::Result<_>>()?;
     let found = find_panels(&pictures)?;
     print_panels(&found);
     manifest.panels = found.panels;
@@ -269,7 +278,8 @@ pub(super) fn run_add(arguments: &AddArguments) -> anyhow::Result<()> {
     if id.is_empty() || id.starts_with('.') || !id.chars().all(plain) {
         bail!("--id {id:?}: letters, digits, dots, dashes and underscores only");
     }
-    let sources = if arguments.file.is_dir() { frames(&arguments.file)? } else { vec![arguments.file.clone()] };
+    let sources =
+        if arguments.file.is_dir() { frames(&arguments.file)? } else { vec![arguments.file.clone()] };
     let cache = arguments.places.cache()?;
     let (mut images, mut files) = (Vec::new(), Vec::new());
     for source in &sources {

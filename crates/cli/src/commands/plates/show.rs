@@ -137,7 +137,8 @@ fn see(panels: Vec<Panel>, pictures: &[GrayImage]) -> anyhow::Result<Seen> {
 
 /// Points of each panel tracked from the annotated panels before it.
 fn tracks(seen: &Seen, annotation: &Annotation) -> Vec<Vec<(Tracked, Option<[f64; 2]>)>> {
-    let points = |i: usize| annotation.panels.iter().find(|p| p.panel == seen.panels[i].panel).map(|p| &p.keypoints);
+    let points =
+        |i: usize| annotation.panels.iter().find(|p| p.panel == seen.panels[i].panel).map(|p| &p.keypoints);
     (0..seen.views.len())
         .map(|i| {
             let known: Vec<PanelPoints> = (i.saturating_sub(2)..i)
@@ -224,7 +225,7 @@ fn draw_panel(canvas: &mut Canvas, at: [u32; 2], seen: &Seen, i: usize, layers: 
 /// The pixels just outside a mask; on blank paper its inside, too.
 fn draw_silhouette(canvas: &mut Canvas, [left, top]: [u32; 2], mask: &GrayImage, drawing: bool) {
     let grown = grayscale_dilate(mask, &Mask::diamond(1));
-    for (x, y, pixel) in grown.enumerate_pixels().filter(|(_, _, pixel)| pixel.0[0] > 127) {
+    for (x, y, _) in grown.enumerate_pixels().filter(|(_, _, pixel)| pixel.0[0] > 127) {
         let inside = mask.get_pixel(x, y).0[0] > 127;
         match (inside, drawing) {
             (false, _) => canvas.picture.put_pixel(left + x, top + y, SILHOUETTE),

@@ -37,8 +37,9 @@ fn panels(text: &str) -> Result<usize, String> {
 
 pub(super) fn run_specimen(arguments: &SpecimenArguments) -> anyhow::Result<()> {
     let annotations = arguments.out.join("annotations");
-    std::fs::create_dir_all(&annotations)
-        .with_context(|| format!("{}: cannot be made; name another folder with --out", annotations.display()))?;
+    std::fs::create_dir_all(&annotations).with_context(|| {
+        format!("{}: cannot be made; name another folder with --out", annotations.display())
+    })?;
     let gaits = if arguments.gaits.is_empty() { Gait::ALL.to_vec() } else { arguments.gaits.clone() };
     for gait in gaits {
         let look = if arguments.random {

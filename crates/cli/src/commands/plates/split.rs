@@ -43,7 +43,10 @@ pub(super) fn run_split(arguments: &SplitArguments) -> anyhow::Result<()> {
     let pictures = source.pictures()?;
     let found = find_panels(&pictures)?;
     print_panels(&found);
-    let out = arguments.out.clone().unwrap_or_else(|| Path::new("target").join(format!("{}-panels.png", source.id)));
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("target").join(format!("{}-panels.png", source.id)));
     write_picture(&out, &draw_panels(&pictures, &found, arguments.drawing))?;
     println!("{}", out.display());
     if arguments.write {
@@ -72,7 +75,14 @@ fn write_panels(source: PlateSource, found: Panels, replace: bool) -> anyhow::Re
 /// Prints panels as a table, and every reason to doubt them.
 pub(super) fn print_panels(found: &Panels) {
     let mut table = Table::new();
-    table.load_style(NOTHING).set_header(["panel", "sure", "top left", "top right", "bottom right", "bottom left"]);
+    table.load_style(NOTHING).set_header([
+        "panel",
+        "sure",
+        "top left",
+        "top right",
+        "bottom right",
+        "bottom left",
+    ]);
     for (i, panel) in found.panels.iter().enumerate() {
         let sure = found.confidence.as_ref().map_or_else(String::new, |c| format!("{:.2}", c[i]));
         let corners = panel.quad_px.map(|[x, y]| format!("{x:.1} {y:.1}"));
