@@ -26,7 +26,7 @@ const MOST_SPLIT_MB: f64 = 600.0;
 const MOST_SILHOUETTES_S: f64 = 1.0;
 const SILHOUETTES: usize = 24;
 /// Longer side of a view, as `muybridge plates show` uses it.
-const VIEW_PX: u32 = 900;
+const VIEW_PX: u32 = 700;
 /// Timed runs; the median counts.
 const RUNS: usize = 5;
 

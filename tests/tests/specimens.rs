@@ -17,7 +17,7 @@ use muybridge_tests::{repository, shared_folder};
 type Point = [f64; 2];
 
 /// Longer side of the pictures that are looked at, px.
-const VIEW_PX: u32 = 900;
+const VIEW_PX: u32 = 700;
 /// A panel counts as found from this overlap on.
 const FOUND_IOU: f64 = 0.95;
 

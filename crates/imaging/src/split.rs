@@ -2,12 +2,12 @@
 //!
 //! 1. A small copy is searched for the mount: several ranges of tone are tried (`mount`). For each, the copy is turned
 //!    upright (`turn`), a fold of the page is counted as mount (`fold`), and rows and columns of panels are what lies
-//!    between lines of mount (`mask`, `spans`, `layout`). Panels of a plate are of one size: that tells a gutter from a
+//!    between paths along mount (`mask`, `spans`, `layout`). Panels of a plate are of one size: that tells a gutter from a
 //!    dark line in a photograph, and a photograph from a caption.
-//! 2. Each edge is then found on the plate itself, to a fraction of a pixel (`edge`). One that lies in shadow is placed by the
-//!    other panels' size (`agree`).
-//! 3. The range of tone is taken for which most of the outlines are seen (`reading`); what speaks against the result is said
-//!    (`doubt`).
+//! 2. Each edge is then found on the plate itself, to a fraction of a pixel (`edge`). One that lies in shadow is placed by
+//!    the other panels' size (`agree`).
+//! 3. The range of tone is taken that explains most of the plate and shows most of the outlines (`reading`); what speaks
+//!    against the result is said (`doubt`).
 
 mod agree;
 mod doubt;

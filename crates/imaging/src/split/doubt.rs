@@ -78,7 +78,7 @@ pub enum Doubt {
     #[error("the rows do not have equally many panels")]
     UnevenRows,
     /// A side was hardly seen.
-    #[error("panel {panel}: its {side} edge is hidden (seen along {:.0} %) and was placed by the size of the others", 100.0 * seen)]
+    #[error("panel {panel}: its {side} edge is hidden (seen along {:.0} %) and is a guess from the other panels", 100.0 * seen)]
     HiddenEdge {
         /// Panel.
         panel: usize,

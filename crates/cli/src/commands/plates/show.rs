@@ -15,7 +15,7 @@ use super::source::PlateSource;
 use crate::commands::canvas::{Canvas, write_picture};
 
 /// Longer side of the pictures that are looked at, px.
-const VIEW_PX: u32 = 900;
+const VIEW_PX: u32 = 700;
 const GAP: u32 = 8;
 /// Height of the caption under a panel, px.
 const CAPTION: u32 = 26;
