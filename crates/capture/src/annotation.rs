@@ -73,8 +73,9 @@ pub struct PanelAnnotation {
     /// What it is used for.
     #[serde(rename = "use")]
     pub usage: PanelUse,
-    /// Two points on the ground line under the near hooves, left to right, plate px.
-    pub ground_px: [[f64; 2]; 2],
+    /// Two points on the ground line under the near hooves, left to right, plate px; none until somebody has drawn it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground_px: Option<[[f64; 2]; 2]>,
     /// Numbered marks of known spacing.
     #[serde(default)]
     pub marks: Vec<Mark>,
@@ -82,6 +83,29 @@ pub struct PanelAnnotation {
     pub contacts: LegContacts,
     /// The points.
     pub keypoints: Keypoints,
+}
+
+impl PanelAnnotation {
+    /// Exchanges the near and the off limb of a pair, or of both pairs: points with their states, and contact labels.
+    ///
+    /// Contact instants belong to the plate and stay.
+    pub fn swap_near_off(&mut self, pair: Option<Pair>) {
+        let wanted = |p: Pair| pair.is_none_or(|only| only == p);
+        for near in Keypoint::all() {
+            let Keypoint::Limb(NearOff::Near, of_pair, joint) = near else { continue };
+            if wanted(of_pair) {
+                let off = Keypoint::Limb(NearOff::Off, of_pair, joint);
+                let (on_near, on_off) = (self.keypoints.0.remove(&near), self.keypoints.0.remove(&off));
+                self.keypoints.0.extend(on_near.map(|placed| (off, placed)));
+                self.keypoints.0.extend(on_off.map(|placed| (near, placed)));
+            }
+        }
+        for swapped in [Pair::Fore, Pair::Hind].into_iter().filter(|p| wanted(*p)) {
+            let [near, off] = [NearOff::Near, NearOff::Off].map(|s| self.contacts.of(s, swapped));
+            self.contacts.set(NearOff::Near, swapped, off);
+            self.contacts.set(NearOff::Off, swapped, near);
+        }
+    }
 }
 
 /// A numbered mark of the background.
@@ -129,6 +153,17 @@ impl LegContacts {
             (NearOff::Near, Pair::Hind) => self.near_hind,
             (NearOff::Off, Pair::Hind) => self.off_hind,
         }
+    }
+
+    /// Sets the label of one leg.
+    pub fn set(&mut self, near_off: NearOff, pair: Pair, label: StanceLabel) {
+        let of_leg = match (near_off, pair) {
+            (NearOff::Near, Pair::Fore) => &mut self.near_fore,
+            (NearOff::Off, Pair::Fore) => &mut self.off_fore,
+            (NearOff::Near, Pair::Hind) => &mut self.near_hind,
+            (NearOff::Off, Pair::Hind) => &mut self.off_hind,
+        };
+        *of_leg = label;
     }
 }
 
@@ -230,6 +265,11 @@ impl Keypoints {
         self.get(keypoint).and_then(Placed::place)
     }
 
+    /// All places, to be changed.
+    pub(crate) fn places_mut(&mut self) -> impl Iterator<Item = &mut [f64; 2]> {
+        self.0.values_mut().filter_map(|placed| placed.at_px.as_mut())
+    }
+
     /// All entries in the fixed order.
     pub fn iter(&self) -> impl Iterator<Item = (Keypoint, &Placed)> {
         self.0.iter().map(|(keypoint, placed)| (*keypoint, placed))
@@ -268,5 +308,53 @@ impl<'de> Deserialize<'de> for Keypoints {
             }
         }
         deserializer.deserialize_map(KeypointsVisitor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel() -> PanelAnnotation {
+        let mut keypoints = Keypoints::default();
+        for (i, keypoint) in Keypoint::all().enumerate() {
+            let state = if i % 3 == 0 { KeypointState::Occluded } else { KeypointState::Visible };
+            keypoints.insert(keypoint, Placed { at_px: Some([i as f64, 1.0]), state, by: PlacedBy::Hand });
+        }
+        // One point that only one side has.
+        keypoints.remove(Keypoint::hoof(NearOff::Off, Pair::Fore));
+        let contacts = LegContacts {
+            near_fore: StanceLabel::Stance,
+            off_fore: StanceLabel::Swing,
+            near_hind: StanceLabel::Unknown,
+            off_hind: StanceLabel::Stance,
+        };
+        let usage = PanelUse::Stride;
+        PanelAnnotation { panel: 1, usage, ground_px: None, marks: Vec::new(), contacts, keypoints }
+    }
+
+    #[test]
+    fn a_pair_is_exchanged_with_states_and_labels_and_nothing_else() {
+        let before = panel();
+        let mut after = before.clone();
+        after.swap_near_off(Some(Pair::Fore));
+        for keypoint in Keypoint::all() {
+            let from = match keypoint {
+                Keypoint::Limb(NearOff::Near, Pair::Fore, joint) => {
+                    Keypoint::Limb(NearOff::Off, Pair::Fore, joint)
+                }
+                Keypoint::Limb(NearOff::Off, Pair::Fore, joint) => {
+                    Keypoint::Limb(NearOff::Near, Pair::Fore, joint)
+                }
+                other => other,
+            };
+            assert_eq!(after.keypoints.get(keypoint), before.keypoints.get(from), "{keypoint}");
+        }
+        assert_eq!(after.contacts.near_fore, StanceLabel::Swing);
+        assert_eq!(after.contacts.off_fore, StanceLabel::Stance);
+        assert_eq!(after.contacts.near_hind, before.contacts.near_hind);
+        after.swap_near_off(Some(Pair::Hind));
+        after.swap_near_off(None);
+        assert_eq!(after, before, "twice is as before");
     }
 }

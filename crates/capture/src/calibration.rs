@@ -146,6 +146,12 @@ pub enum CalibrationError {
         /// The mark's number.
         mark: f64,
     },
+    /// The ground line is missing.
+    #[error("panel {panel}: ground_px: not drawn yet; draw the ground line under the near hooves")]
+    NoGround {
+        /// The panel.
+        panel: u32,
+    },
     /// Nothing to measure the withers on.
     #[error("keypoints.withers: placed in no panel, but the scale is driven by the withers height")]
     NoWithers,
@@ -190,7 +196,7 @@ impl<'a> Context<'a> {
 
     /// Least-squares line through a panel's marks; none with fewer than two.
     pub(crate) fn mark_scale(&self, panel: &PanelAnnotation, spacing_m: f64) -> Option<MarkScale> {
-        let ground = GroundLine::through(panel.ground_px);
+        let ground = GroundLine::through(panel.ground_px?);
         let points: Vec<(f64, f64)> =
             panel.marks.iter().map(|m| (m.mark * spacing_m, ground.along_and_above(m.at_px)[0])).collect();
         let n = points.len() as f64;
@@ -210,9 +216,9 @@ impl<'a> Context<'a> {
         &self,
         panel: &PanelAnnotation,
         index: f64,
+        ground: &GroundLine,
         scale: Option<MarkScale>,
     ) -> Result<(f64, AxisOrigin), CalibrationError> {
-        let ground = GroundLine::through(panel.ground_px);
         let centre_px = self
             .manifest
             .panels
@@ -398,7 +404,7 @@ fn withers_px(context: &Context<'_>) -> Option<f64> {
         .iter()
         .filter_map(|panel| {
             let place = panel.keypoints.place(withers)?;
-            Some(GroundLine::through(panel.ground_px).along_and_above(place)[1])
+            Some(GroundLine::through(panel.ground_px?).along_and_above(place)[1])
         })
         .collect();
     (!heights.is_empty()).then(|| heights.iter().sum::<f64>() / heights.len() as f64).filter(|px| *px > 1.0)
@@ -423,7 +429,8 @@ impl Context<'_> {
         index: f64,
         scales: &Scales,
     ) -> Result<PanelCamera, CalibrationError> {
-        let ground = GroundLine::through(panel.ground_px);
+        let drawn = panel.ground_px.ok_or(CalibrationError::NoGround { panel: panel.panel })?;
+        let ground = GroundLine::through(drawn);
         let marks =
             self.known_length().and_then(|length| self.mark_scale(panel, length.mark_spacing_m.value));
         let ratio = scales.parallax.map_or(1.0, |p| p.value);
@@ -431,7 +438,7 @@ impl Context<'_> {
             .common_px_per_m
             .or(marks.map(|m| m.px_per_m * ratio))
             .ok_or(CalibrationError::TooFewMarks { panel: panel.panel })?;
-        let (axis_px, origin) = self.axis(panel, index, marks)?;
+        let (axis_px, origin) = self.axis(panel, index, &ground, marks)?;
         let sign = self.facing.sign();
         let camera_x_m = match origin {
             AxisOrigin::At(x_m) => x_m,

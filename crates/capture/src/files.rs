@@ -216,6 +216,11 @@ pub fn write_json<T: Serialize>(path: &Path, document: &T) -> Result<(), FileErr
     write_atomically(path, to_stable_json(document).as_bytes())
 }
 
+/// SHA-256 of bytes.
+pub(crate) fn hash_bytes(bytes: &[u8]) -> Hash {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// SHA-256 of a file.
 ///
 /// # Errors

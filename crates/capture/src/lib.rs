@@ -8,6 +8,8 @@
 mod annotation;
 mod calibration;
 mod catalogue;
+mod document;
+pub mod exchange;
 mod files;
 mod images;
 mod keypoint;
@@ -23,6 +25,10 @@ pub use annotation::{
 };
 pub use calibration::{CalibrationError, Disagreement, Estimate, PanelCamera, PlateCalibration, calibrate};
 pub use catalogue::{CATALOGUE_SCHEMA, Catalogue, CataloguePlate};
+pub use document::{
+    Document, DocumentError, Draft, JournalError, STATE_VARIABLE, SaveError, Waiting, annotation_beside,
+    discard, relative_path, state_folder, waiting,
+};
 pub use files::{
     FileError, Hash, hash_file, read_json, read_text, to_stable_json, write_atomically, write_json,
 };

@@ -97,7 +97,7 @@ fn stance_toe(
     let scale = context.mark_scale(panel, mark_m)?;
     let toe = Keypoint::hoof(side, pair);
     let place = panel.keypoints.place(toe)?;
-    let along_px = GroundLine::through(panel.ground_px).along_and_above(place)[0];
+    let along_px = GroundLine::through(panel.ground_px?).along_and_above(place)[0];
     let camera_x_m = spacing_m * (f64::from(panel.panel) - f64::from(context.annotation.stride.first));
     let facing = context.facing.sign();
     let axis_mark_m = first_axis_mark * mark_m + scale.sign * facing * camera_x_m;

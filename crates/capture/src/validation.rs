@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::annotation::{ANNOTATION_SCHEMA, Annotation, KeypointState, PanelAnnotation, PanelUse};
-use crate::files::{FileError, Hash, hash_file, read_json};
+use crate::files::{FileError, Hash, hash_bytes, hash_file, read_json, to_stable_json};
 use crate::images::locate_image;
 use crate::manifest::{
     Calibration, Facing, Known, MANIFEST_SCHEMA, Manifest, Parallax, Plane, Position, ScaleSource, TimeSource,
@@ -21,6 +21,8 @@ const DURATIONS_S: [f64; 2] = [1e-4, 10.0];
 const SPACINGS_M: [f64; 2] = [1e-3, 100.0];
 /// Widest and highest image: four times the largest scan of a plate known to us.
 const LARGEST_IMAGE_PX: u32 = 60_000;
+/// No point of a plate lies farther from its corner than this, px.
+const FARTHEST_PX: f64 = 1e6;
 /// A point may lie this far outside its panel, px: hooves and noses touch the mount.
 const PANEL_MARGIN_PX: f64 = 12.0;
 
@@ -108,12 +110,34 @@ impl Plate {
         let manifest: Manifest = read_json(&manifest_path, MANIFEST_SCHEMA)
             .map_err(|error| unreadable_manifest(annotation_path, error))?;
         let mut faults = Faults { path: manifest_path.clone(), found: Vec::new() };
+        let images = faults.images(&manifest, &manifest_path);
+        let plate = Self::checked((&manifest_path, manifest), (annotation_path, annotation), faults.found)?;
+        Ok(Self { annotation_sha256: hash_file(annotation_path)?, images, ..plate })
+    }
+
+    /// Validates documents that are being worked on, whatever the files hold; images are not looked at.
+    ///
+    /// # Errors
+    /// With every fault found, in document order.
+    pub fn from_documents(
+        manifest: (&Path, Manifest),
+        annotation: (&Path, Annotation),
+    ) -> Result<Self, PlateError> {
+        Self::checked(manifest, annotation, Vec::new())
+    }
+
+    fn checked(
+        (manifest_path, manifest): (&Path, Manifest),
+        (annotation_path, annotation): (&Path, Annotation),
+        found: Vec<Fault>,
+    ) -> Result<Self, PlateError> {
+        let mut faults = Faults { path: manifest_path.to_path_buf(), found };
         faults.identifier(&manifest);
         faults.manifest(&manifest);
         faults.complete(&manifest);
-        let images = faults.images(&manifest, &manifest_path);
         faults.path = annotation_path.to_path_buf();
         faults.annotation(&annotation, &manifest);
+        faults.annotation_is_complete(&annotation, &manifest);
         let known = manifest.facing.zip(manifest.calibration.clone());
         let Some((facing, calibration)) = known.filter(|_| faults.found.is_empty()) else {
             return Err(PlateError::Faults(faults.found));
@@ -121,12 +145,12 @@ impl Plate {
         Ok(Self {
             facing,
             calibration,
-            annotation_sha256: hash_file(annotation_path)?,
+            annotation_sha256: hash_bytes(to_stable_json(&annotation).as_bytes()),
             annotation_path: annotation_path.to_path_buf(),
-            manifest_path,
+            manifest_path: manifest_path.to_path_buf(),
             manifest,
             annotation,
-            images,
+            images: ImageCheck::Absent,
         })
     }
 
@@ -148,6 +172,20 @@ impl Manifest {
         faults.manifest(&manifest);
         if faults.found.is_empty() { Ok(manifest) } else { Err(PlateError::Faults(faults.found)) }
     }
+}
+
+/// What must hold of an annotation, finished or not, for a program to show and change it.
+///
+/// # Errors
+/// With every fault found.
+pub(crate) fn check_draft(
+    annotation_path: &Path,
+    annotation: &Annotation,
+    manifest: &Manifest,
+) -> Result<(), PlateError> {
+    let mut faults = Faults { path: annotation_path.to_path_buf(), found: Vec::new() };
+    faults.annotation(annotation, manifest);
+    if faults.found.is_empty() { Ok(()) } else { Err(PlateError::Faults(faults.found)) }
 }
 
 /// A manifest that is not there is more likely a wrong name in the annotation.
@@ -360,6 +398,7 @@ impl Faults {
         check
     }
 
+    /// What makes an annotation unusable.
     fn annotation(&mut self, annotation: &Annotation, manifest: &Manifest) {
         let hashes: Vec<&String> = manifest.images.iter().map(|image| &image.sha256).collect();
         let same = annotation.images_sha256.iter().eq(hashes);
@@ -383,12 +422,37 @@ impl Faults {
                 "panel numbers must rise without repeats",
             );
             last = panel.panel;
-            self.panel(panel, manifest);
+            self.places(panel);
         }
-        self.stride(annotation, manifest);
+        if let Some(closes) = annotation.stride.closes_after_panels {
+            self.check(
+                (2.0..=1000.0).contains(&closes),
+                None,
+                "stride.closes_after_panels",
+                "must be between 2 and 1000 panels",
+            );
+        }
     }
 
-    fn stride(&mut self, annotation: &Annotation, manifest: &Manifest) {
+    /// Numbers no plate can have.
+    fn places(&mut self, panel: &PanelAnnotation) {
+        let number = Some(panel.panel);
+        let good = |place: &[f64; 2]| place.iter().all(|v| v.abs() < FARTHEST_PX);
+        let ground = panel.ground_px.iter().flatten().all(good);
+        self.check(ground, number, "ground_px", "must be two points of the plate");
+        for (i, mark) in panel.marks.iter().enumerate() {
+            let good = good(&mark.at_px) && mark.mark.abs() < 1e4;
+            let message = "must be a mark number and a point of the plate";
+            self.check(good, number, &format!("marks[{i}]"), message);
+        }
+        for (keypoint, placed) in panel.keypoints.iter() {
+            let field = format!("keypoints.{keypoint}");
+            self.check(placed.at_px.iter().all(good), number, &field, "must be a point of the plate");
+        }
+    }
+
+    /// What an annotation may lack until it is to be fitted.
+    fn annotation_is_complete(&mut self, annotation: &Annotation, manifest: &Manifest) {
         let span = annotation.stride;
         self.check(span.first < span.last, None, "stride", "first must come before last");
         for (end, panel) in [("first", span.first), ("last", span.last)] {
@@ -400,13 +464,8 @@ impl Faults {
                 "the manifest has no panel of this number",
             );
         }
-        if let Some(closes) = span.closes_after_panels {
-            self.check(
-                (2.0..=1000.0).contains(&closes),
-                None,
-                "stride.closes_after_panels",
-                "must be between 2 and 1000 panels",
-            );
+        for panel in &annotation.panels {
+            self.panel(panel, manifest);
         }
         let used = annotation
             .panels
@@ -420,6 +479,10 @@ impl Faults {
                 format!("{n} panels are marked for the stride; a fit needs at least {MIN_STRIDE_PANELS}"),
             );
         }
+        for (i, instant) in annotation.instants.iter().enumerate() {
+            let inside = (f64::from(span.first)..=f64::from(span.last)).contains(&instant.at_panel);
+            self.check(inside, None, &format!("instants[{i}].at_panel"), "lies outside the stride");
+        }
         let time = manifest.calibration.as_ref().map(|calibration| &calibration.time);
         if let Some(intervals) = time.and_then(|time| time.intervals_s.as_ref()) {
             let expected = span.last.saturating_sub(span.first) as usize;
@@ -430,10 +493,6 @@ impl Faults {
                 "the manifest's intervals_s must have one entry per gap between the stride's panels",
             );
         }
-        for (i, instant) in annotation.instants.iter().enumerate() {
-            let inside = (f64::from(span.first)..=f64::from(span.last)).contains(&instant.at_panel);
-            self.check(inside, None, &format!("instants[{i}].at_panel"), "lies outside the stride");
-        }
     }
 
     fn panel(&mut self, panel: &PanelAnnotation, manifest: &Manifest) {
@@ -441,19 +500,21 @@ impl Faults {
         let Some(place) = manifest.panels.iter().find(|p| p.panel == panel.panel) else {
             return self.add(number, "panel", "the manifest has no panel of this number");
         };
-        let [a, b] = panel.ground_px;
-        let line = a.iter().chain(&b).all(|v| v.is_finite() && v.abs() < 1e6) && b[0] - a[0] > 10.0;
-        self.check(line, number, "ground_px", "needs two points at least 10 px apart, the left one first");
+        match panel.ground_px {
+            Some([a, b]) => {
+                let message = "needs two points at least 10 px apart, the left one first";
+                self.check(b[0] - a[0] > 10.0, number, "ground_px", message);
+            }
+            None => self.check(
+                panel.usage == PanelUse::Unused,
+                number,
+                "ground_px",
+                "not drawn yet; draw the ground line under the near hooves",
+            ),
+        }
         for (i, mark) in panel.marks.iter().enumerate() {
             let repeated = panel.marks[..i].iter().any(|other| other.mark == mark.mark);
             self.check(!repeated, number, &format!("marks[{i}].mark"), "this mark is placed twice");
-            let good = mark.at_px.iter().all(|v| v.abs() < 1e6) && mark.mark.abs() < 1e4;
-            self.check(
-                good,
-                number,
-                &format!("marks[{i}]"),
-                "must be a mark number and a point of the plate",
-            );
         }
         self.keypoints(panel, place);
     }

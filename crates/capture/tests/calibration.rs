@@ -79,7 +79,7 @@ impl Truth {
         PanelAnnotation {
             panel,
             usage: if panel == PANELS { PanelUse::Standing } else { PanelUse::Stride },
-            ground_px: [[left, GROUND_Y], [left + 600.0, GROUND_Y]],
+            ground_px: Some([[left, GROUND_Y], [left + 600.0, GROUND_Y]]),
             marks: [-2.0, 0.0, 1.0, 2.0]
                 .map(|d| Mark { mark: nearest + d, at_px: self.mark_px(panel, nearest + d) })
                 .to_vec(),

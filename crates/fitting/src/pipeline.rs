@@ -33,7 +33,7 @@ pub struct PlateFit {
     pub withers_height_m: f64,
     /// Residuals of all placed points, panel by panel.
     pub residuals: Vec<PointResidual>,
-    /// Errors of points predicted without any point of their type.
+    /// Errors of points predicted without any point of their type; empty where that was not asked for.
     pub held_out: Vec<PointResidual>,
     /// Numbers outside what horses do, in words.
     pub warnings: Vec<String>,
@@ -72,8 +72,17 @@ pub fn fit_plate(
     skeleton: &Skeleton,
     weights: &Weights,
 ) -> Result<PlateFit, PlateFailure> {
-    let plate = Plate::load(annotation_path)?;
-    let path = || annotation_path.to_path_buf();
+    let mut fitted = fit_loaded(Plate::load(annotation_path)?, skeleton, weights)?;
+    fitted.held_out = held_out_errors(skeleton, &fitted.fit, weights);
+    Ok(fitted)
+}
+
+/// Calibrates, fits and analyses a plate that was loaded before, or is being worked on; nothing is held out.
+///
+/// # Errors
+/// When calibration or contacts cannot be worked out.
+pub fn fit_loaded(plate: Plate, skeleton: &Skeleton, weights: &Weights) -> Result<PlateFit, PlateFailure> {
+    let path = || plate.annotation_path.clone();
     let calibration = calibrate(&plate.manifest, &plate.annotation)
         .map_err(|cause| PlateFailure::Calibration { path: path(), cause })?;
     let observation = StrideObservation::new(&plate, &calibration, weights);
@@ -90,7 +99,6 @@ pub fn fit_plate(
     let stride_sd = fit.stride_time.sd_s.hypot(stride_s * relative_time_sd);
     let analysis = GaitAnalysis::new(contacts, [stride_s, stride_sd]);
     let residuals = fit.residuals_of(&observation);
-    let held_out = held_out_errors(skeleton, &fit, weights);
     let mut fitted = PlateFit {
         plate,
         calibration,
@@ -98,7 +106,7 @@ pub fn fit_plate(
         analysis,
         withers_height_m,
         residuals,
-        held_out,
+        held_out: Vec::new(),
         warnings: Vec::new(),
     };
     fitted.warnings = fitted.implausible();

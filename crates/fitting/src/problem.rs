@@ -222,37 +222,17 @@ impl StrideProblem {
 
     /// Reciprocal apparatus and passive fetlock.
     fn add_couplings(&mut self, skeleton: &Skeleton, observation: &StrideObservation) {
-        let (reciprocal, fetlock) = (skeleton.reciprocal, skeleton.fetlock);
         for slot in 0..self.layout.panels {
             let contacts = observation.panels[self.order[slot]].contacts;
             for limb in Limb::ALL {
-                let first = limb.first_bone();
-                let bend = |i: usize| self.layout.panel(slot, BENDS + first + i);
-                let rest = |i: usize| self.chain.rest_rad[first + i];
-                if limb.pair() == Pair::Hind {
-                    let (sd, ratio) = (f64::from(reciprocal.sd_rad), f64::from(reciprocal.ratio));
-                    let terms = vec![(bend(3), 1.0 / sd), (bend(2), -ratio / sd)];
-                    self.linear.push(LinearRow { terms, constant: (ratio * rest(2) - rest(3)) / sd });
+                let rows =
+                    [reciprocal_row(skeleton, limb), fetlock_row(skeleton, limb, contacts[limb.index()])];
+                for mut row in rows.into_iter().flatten() {
+                    for (index, _) in &mut row.terms {
+                        *index = self.layout.panel(slot, *index);
+                    }
+                    self.linear.push(row);
                 }
-                let row = match contacts[limb.index()] {
-                    StanceLabel::Unknown => continue,
-                    StanceLabel::Stance => {
-                        let sd = f64::from(fetlock.stance_sd_rad);
-                        let constant = -f64::from(fetlock.stance_bend_rad) / sd;
-                        LinearRow { terms: vec![(bend(4), 1.0 / sd)], constant }
-                    }
-                    StanceLabel::Swing => {
-                        let sd = f64::from(fetlock.swing_sd_rad);
-                        let swing = if limb.pair() == Pair::Fore { fetlock.fore } else { fetlock.hind };
-                        let [upper, cannon] = [swing.per_upper_bend, swing.per_cannon_bend].map(f64::from);
-                        let terms =
-                            vec![(bend(4), 1.0 / sd), (bend(1), -upper / sd), (bend(3), -cannon / sd)];
-                        let mean = f64::from(swing.swing_bend_rad) - upper * rest(1) - cannon * rest(3);
-                        let constant = -mean / sd;
-                        LinearRow { terms, constant }
-                    }
-                };
-                self.linear.push(row);
             }
         }
     }
@@ -387,8 +367,42 @@ impl StrideProblem {
     }
 }
 
+/// Reciprocal apparatus of a hind limb, in the unknowns of its panel.
+pub(crate) fn reciprocal_row(skeleton: &Skeleton, limb: Limb) -> Option<LinearRow> {
+    let (sd, ratio) = (f64::from(skeleton.reciprocal.sd_rad), f64::from(skeleton.reciprocal.ratio));
+    let rest = |i: usize| f64::from(skeleton.bones[limb.first_bone() + i].rest_bend_rad);
+    let bend = |i: usize| BENDS + limb.first_bone() + i;
+    (limb.pair() == Pair::Hind).then(|| LinearRow {
+        terms: vec![(bend(3), 1.0 / sd), (bend(2), -ratio / sd)],
+        constant: (ratio * rest(2) - rest(3)) / sd,
+    })
+}
+
+/// Passive fetlock of a limb of known contact, in the unknowns of its panel.
+pub(crate) fn fetlock_row(skeleton: &Skeleton, limb: Limb, contact: StanceLabel) -> Option<LinearRow> {
+    let fetlock = skeleton.fetlock;
+    let rest = |i: usize| f64::from(skeleton.bones[limb.first_bone() + i].rest_bend_rad);
+    let bend = |i: usize| BENDS + limb.first_bone() + i;
+    match contact {
+        StanceLabel::Unknown => None,
+        StanceLabel::Stance => {
+            let sd = f64::from(fetlock.stance_sd_rad);
+            let constant = -f64::from(fetlock.stance_bend_rad) / sd;
+            Some(LinearRow { terms: vec![(bend(4), 1.0 / sd)], constant })
+        }
+        StanceLabel::Swing => {
+            let sd = f64::from(fetlock.swing_sd_rad);
+            let swing = if limb.pair() == Pair::Fore { fetlock.fore } else { fetlock.hind };
+            let [upper, cannon] = [swing.per_upper_bend, swing.per_cannon_bend].map(f64::from);
+            let terms = vec![(bend(4), 1.0 / sd), (bend(1), -upper / sd), (bend(3), -cannon / sd)];
+            let mean = f64::from(swing.swing_bend_rad) - upper * rest(1) - cannon * rest(3);
+            Some(LinearRow { terms, constant: -mean / sd })
+        }
+    }
+}
+
 impl LinearRow {
-    fn residual(&self, x: &[f64]) -> f64 {
+    pub(crate) fn residual(&self, x: &[f64]) -> f64 {
         self.terms.iter().fold(self.constant, |sum, (i, c)| sum + c * x[*i])
     }
 }

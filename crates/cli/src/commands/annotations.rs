@@ -1,4 +1,5 @@
-//! `muybridge annotations`: look at annotations, check them, compare two passes over the same plate.
+//! `muybridge annotations`: look at annotations, check them, compare two passes over the same plate, and exchange them
+//! with other tools.
 
 use std::path::{Path, PathBuf};
 
@@ -7,12 +8,13 @@ use clap::{Args, Subcommand};
 use muybridge_capture::{ANNOTATION_SCHEMA, Annotation, Plate, hash_file, read_json};
 use muybridge_core::Skeleton;
 use muybridge_fitting::pipeline::fit_plate;
+use muybridge_fitting::repeatability::Repeatability;
 use muybridge_fitting::weights::Weights;
 use muybridge_imaging::{LoadLimits, load_rgb};
 
 use super::canvas::write_picture;
 use super::contact_sheet::ContactSheet;
-use super::repeatability::Repeatability;
+use super::exchange::{ExportArguments, ImportArguments, run_export, run_import};
 
 /// Folder of annotations when only a plate's identifier is given.
 const FOLDER: &str = "annotations";
@@ -26,6 +28,10 @@ pub(super) enum AnnotationsCommand {
     Compare(CompareArguments),
     /// Draw points, skeleton and fit over the photographs. Example: `muybridge annotations show sallie-gardner-1878`
     Show(ShowArguments),
+    /// Write points for DeepLabCut, COCO, labelme or as a table. Example: `muybridge annotations export sallie-gardner-1878 --format coco --out sallie`
+    Export(ExportArguments),
+    /// Take points over from such files. Example: `muybridge annotations import CollectedData_me.csv --into sallie-gardner-1878 --out mine.json`
+    Import(ImportArguments),
 }
 
 /// Arguments of `check`.
@@ -76,6 +82,8 @@ impl AnnotationsCommand {
             Self::Check(arguments) => check(arguments),
             Self::Compare(arguments) => compare(arguments),
             Self::Show(arguments) => show(arguments),
+            Self::Export(arguments) => run_export(&annotation_path(&arguments.plate), arguments),
+            Self::Import(arguments) => run_import(&annotation_path(&arguments.into), arguments),
         }
     }
 }

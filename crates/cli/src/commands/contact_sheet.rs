@@ -116,8 +116,9 @@ impl ContactSheet<'_> {
                 f64::from(at[1]) + (p[1] - crop.y as f64) * zoom,
             ]
         };
-        let ground = annotation.ground_px.map(sheet_from_plate);
-        canvas.line(ground[0], ground[1], 1.5, GROUND);
+        if let Some([left, right]) = annotation.ground_px.map(|line| line.map(sheet_from_plate)) {
+            canvas.line(left, right, 1.5, GROUND);
+        }
         self.draw_fit(canvas, annotation, &sheet_from_plate);
         for (keypoint, placed) in annotation.keypoints.iter() {
             let Some(place) = placed.place() else { continue };

@@ -3,8 +3,8 @@
 mod annotations;
 mod canvas;
 mod contact_sheet;
+mod exchange;
 mod plates;
-mod repeatability;
 
 use std::process::ExitCode;
 
@@ -22,7 +22,7 @@ pub struct Muybridge {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Look at annotations: `show`, `check`, `compare`.
+    /// Look at annotations and exchange them: `show`, `check`, `compare`, `export`, `import`.
     #[command(subcommand)]
     Annotations(annotations::AnnotationsCommand),
     /// Which plates there are: `list`.

@@ -121,7 +121,7 @@ fn annotated(panel: &PanelTruth) -> PanelAnnotation {
     PanelAnnotation {
         panel: panel.camera.panel,
         usage: PanelUse::Stride,
-        ground_px: panel.ground_px,
+        ground_px: Some(panel.ground_px),
         marks: panel
             .uprights
             .iter()

@@ -1,0 +1,294 @@
+//! The program as a whole: one frame of it, and what happens between frames.
+
+mod commands;
+mod dialogs;
+mod file_commands;
+mod menus;
+mod places;
+mod pose_commands;
+
+use std::path::{Path, PathBuf};
+
+use egui::{CentralPanel, Context, Panel, Ui};
+
+use crate::browser::Browser;
+use crate::exchange::ExchangeWindow;
+use crate::job::{Job, take_answer};
+use crate::key_editor::KeyEditor;
+use crate::opening::{Opened, open};
+use crate::palette::{Chosen, Palette};
+use crate::session::{Page, Session};
+use crate::settings::{Settings, Theme};
+use crate::toast::Messages;
+use crate::tour::Tour;
+use crate::views;
+use dialogs::{After, Dialog};
+pub use places::Places;
+
+use crate::command::Command;
+
+/// What a page may use of the program besides its plate.
+pub struct PageContext<'a> {
+    /// Settings, the keys among them.
+    pub settings: &'a mut Settings,
+    /// Messages.
+    pub messages: &'a mut Messages,
+    /// Commands to be done after the frame's drawing.
+    pub commands: &'a mut Vec<Command>,
+}
+
+/// The program.
+pub struct Annotator {
+    /// Folders.
+    pub places: Places,
+    /// What is remembered.
+    pub settings: Settings,
+    /// Messages.
+    pub messages: Messages,
+    /// The open plate.
+    pub session: Option<Session>,
+    palette: Option<Palette>,
+    key_editor: Option<KeyEditor>,
+    browser: Option<Browser>,
+    exchange: Option<ExchangeWindow>,
+    tour: Option<Tour>,
+    dialog: Option<Dialog>,
+    opening: Option<Job<Result<Opened, String>>>,
+    picking: Option<Job<Option<PathBuf>>>,
+    may_close: bool,
+}
+
+impl Annotator {
+    /// Starts with a plate to open, or with what was left unsaved, or, the first time, with a specimen and the tour.
+    pub fn new(context: &Context, places: Places, path: Option<&Path>) -> Self {
+        let settings = Settings::read(places.state.as_deref());
+        let mut annotator = Self {
+            messages: Messages::default(),
+            session: None,
+            palette: None,
+            key_editor: None,
+            browser: None,
+            exchange: None,
+            tour: None,
+            dialog: None,
+            opening: None,
+            picking: None,
+            may_close: false,
+            settings,
+            places,
+        };
+        annotator.apply_theme(context);
+        let left = annotator.places.journals().map(|j| muybridge_capture::waiting(&j)).unwrap_or_default();
+        if let Some(path) = path {
+            annotator.open(context, path);
+        } else if !left.is_empty() {
+            annotator.dialog = Some(Dialog::Recover(left));
+        } else if !annotator.settings.tour_seen {
+            annotator.open_specimen(context);
+            annotator.tour = Some(Tour::default());
+        }
+        annotator
+    }
+
+    fn apply_theme(&self, context: &Context) {
+        context.set_theme(match self.settings.theme {
+            Theme::System => egui::ThemePreference::System,
+            Theme::Light => egui::ThemePreference::Light,
+            Theme::Dark => egui::ThemePreference::Dark,
+        });
+    }
+
+    /// One frame.
+    pub fn ui(&mut self, ui: &mut Ui) {
+        let context = ui.ctx().clone();
+        self.finish_background_work(&context);
+        self.take_dropped_files(&context);
+        let mut commands = Vec::new();
+        if !self.is_asking() {
+            self.take_keys(&context, &mut commands);
+        }
+        Panel::top("menu bar").show(ui, |ui| self.menu_bar(ui, &mut commands));
+        if let Some(session) = &mut self.session {
+            let Self { settings, messages, .. } = self;
+            session.before_frame(&context, settings.fit_always);
+            plate_ui(ui, session, &mut PageContext { settings, messages, commands: &mut commands });
+        } else {
+            let welcome = |ui: &mut Ui| views::welcome::show(ui, &self.settings, &mut commands);
+            if let Some(path) = CentralPanel::default().show(ui, welcome).inner {
+                self.open(&context, &path);
+            }
+        }
+        self.windows(&context, &mut commands);
+        for command in commands {
+            self.run(&context, command);
+        }
+        self.watch_closing(&context);
+        self.messages.show(&context);
+    }
+
+    /// Whether something is open that has the keys to itself.
+    fn is_asking(&self) -> bool {
+        self.dialog.is_some() || self.palette.is_some() || self.key_editor.is_some()
+    }
+
+    /// Keys that no text field takes.
+    fn take_keys(&mut self, context: &Context, commands: &mut Vec<Command>) {
+        if context.egui_wants_keyboard_input() {
+            return;
+        }
+        let pressed: Vec<_> =
+            context.input(|input| input.events.iter().filter_map(crate::keys::pressed).collect());
+        for key in pressed {
+            if let Some(command) = self.settings.keys.command(&key) {
+                // Otherwise the focus of the keyboard moves, too.
+                context.input_mut(|input| input.consume_key(key.modifiers, key.logical_key));
+                commands.push(command);
+            }
+        }
+    }
+
+    fn windows(&mut self, context: &Context, commands: &mut Vec<Command>) {
+        if let Some(mut palette) = self.palette.take() {
+            match palette.show(context, &self.settings.keys, |command| self.why_not(command)) {
+                Chosen::Nothing => self.palette = Some(palette),
+                Chosen::Closed => {}
+                Chosen::Command(command) => commands.push(command),
+            }
+        }
+        if let Some(editor) = &mut self.key_editor
+            && !editor.show(context, &mut self.settings.keys)
+        {
+            self.key_editor = None;
+            self.write_settings();
+        }
+        if let Some(browser) = &mut self.browser {
+            let (open_path, stays) = browser.show(context, &mut self.messages);
+            if !stays {
+                self.browser = None;
+            }
+            if let Some(path) = open_path {
+                self.leave(context, After::Open(path));
+            }
+        }
+        if let (Some(window), Some(session)) = (&mut self.exchange, &mut self.session)
+            && !window.show(context, session, &mut self.messages)
+        {
+            self.exchange = None;
+        }
+        if let Some(tour) = &mut self.tour
+            && !tour.show(context, self.session.as_mut())
+        {
+            self.tour = None;
+            self.settings.tour_seen = true;
+            self.write_settings();
+        }
+        self.show_dialog(context);
+    }
+
+    fn finish_background_work(&mut self, context: &Context) {
+        match take_answer(&mut self.opening) {
+            Some(Ok(Ok(opened))) => self.take_opened(context, opened),
+            Some(Ok(Err(trouble)) | Err(trouble)) => self.messages.trouble(trouble),
+            None => {}
+        }
+        if let Some(Ok(Some(path))) = take_answer(&mut self.picking) {
+            self.leave(context, After::Open(path));
+        }
+        if let Some(session) = &mut self.session {
+            session.finish_background_work(&mut self.messages);
+        }
+    }
+
+    fn take_dropped_files(&mut self, context: &Context) {
+        let dropped = context.input(|input| input.raw.dropped_files.clone());
+        for file in dropped {
+            self.leave(context, After::Open(file.path().to_path_buf()));
+        }
+    }
+
+    /// Starts to open a path; the plate that is open stays until the other one is there.
+    pub fn open(&mut self, context: &Context, path: &Path) {
+        let (path, journals) = (path.to_path_buf(), self.places.journals());
+        let what = format!("Opening {}", path.display());
+        self.opening = Some(Job::start(what, context, move || open(&path, journals.as_deref())));
+    }
+
+    /// Waits until what is being opened is there: for programs without a window.
+    pub fn wait_until_open(&mut self, context: &Context) {
+        if let Some(job) = self.opening.take() {
+            match job.wait() {
+                Ok(Ok(opened)) => self.take_opened(context, opened),
+                Ok(Err(trouble)) | Err(trouble) => self.messages.trouble(trouble),
+            }
+        }
+    }
+
+    fn take_opened(&mut self, context: &Context, opened: Opened) {
+        match opened {
+            Opened::Document(document, troubles) => {
+                if self.session.as_ref().is_some_and(|session| session.document.is_changed()) {
+                    self.dialog = Some(Dialog::Unsaved(After::Show(document)));
+                    return;
+                }
+                troubles.into_iter().for_each(|trouble| self.messages.trouble(trouble));
+                self.show_document(context, *document);
+            }
+            Opened::Waiting(waiting) => self.dialog = Some(Dialog::Recover(vec![waiting])),
+            Opened::Folder(folder) => self.browser = Some(Browser::new(&folder)),
+        }
+    }
+
+    fn show_document(&mut self, context: &Context, document: muybridge_capture::Document) {
+        let path = match document.annotation_path() {
+            path if path.exists() => path,
+            _ => document.manifest_path(),
+        };
+        if path.exists() {
+            self.settings.remember(path);
+            self.write_settings();
+        }
+        self.close_session();
+        let mut session = Session::new(document, context);
+        if session.draft().annotation.annotator.is_empty() && !self.settings.annotator.is_empty() {
+            let name = self.settings.annotator.clone();
+            session.edit("Annotator", |draft| draft.annotation.annotator = name);
+        }
+        self.session = Some(session);
+    }
+
+    /// Closes the open plate, whose changes are saved or not wanted.
+    fn close_session(&mut self) {
+        self.exchange = None;
+        if let Some(session) = self.session.take() {
+            session.document.close();
+        }
+    }
+
+    fn write_settings(&mut self) {
+        if let Err(trouble) = self.settings.write() {
+            self.messages.trouble(format!("Settings are not kept: {trouble}"));
+        }
+    }
+}
+
+/// The pages of an open plate.
+fn plate_ui(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
+    Panel::top("pages").show(ui, |ui| views::tabs::show(ui, session, page));
+    Panel::bottom("strip").resizable(false).show(ui, |ui| views::strip::show(ui, session, page));
+    Panel::right("inspector").default_size(310.0).size_range(260.0..=460.0).show(ui, |ui| {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match session.page {
+            Page::Plate => views::plate_page::inspector(ui, session, page),
+            Page::Calibrate => views::calibrate_page::inspector(ui, session, page),
+            Page::Pose => views::pose_page::inspector(ui, session, page),
+            Page::Gait => views::gait_page::inspector(ui, session, page),
+            Page::Play => views::play_page::inspector(ui, session, page),
+        });
+    });
+    CentralPanel::no_frame().show(ui, |ui| match (session.shown.sheet, session.page) {
+        (true, _) => views::sheet::show(ui, session, page),
+        (_, Page::Plate) => views::plate_page::canvas(ui, session, page),
+        (_, Page::Calibrate) => views::calibrate_page::canvas(ui, session, page),
+        (_, Page::Pose | Page::Gait) => views::pose_page::canvas(ui, session, page),
+        (_, Page::Play) => views::play_page::canvas(ui, session, page),
+    });
+}

@@ -1,0 +1,71 @@
+//! The menu bar: every command with its key, and what is under way.
+
+use egui::{Button, RichText, Ui};
+
+use super::{Annotator, Command};
+use crate::command::Menu;
+use crate::toast::trouble_color;
+
+impl Annotator {
+    pub(super) fn menu_bar(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        egui::MenuBar::new().ui(ui, |ui| {
+            for (menu, title) in Menu::ALL {
+                ui.menu_button(title, |ui| self.menu(ui, menu, commands));
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| self.status(ui));
+        });
+    }
+
+    fn menu(&self, ui: &mut Ui, menu: Menu, commands: &mut Vec<Command>) {
+        ui.set_min_width(260.0);
+        for command in Command::ALL.iter().copied().filter(|command| command.description().menu == menu) {
+            let why_not = self.why_not(command);
+            let button = Button::new(self.menu_title(command)).shortcut_text(self.settings.keys.shown(command));
+            let response = ui.add_enabled(why_not.is_none(), button);
+            if let Some(why_not) = why_not {
+                response.on_disabled_hover_text(why_not);
+            } else if response.clicked() {
+                commands.push(command);
+                ui.close();
+            }
+        }
+    }
+
+    /// A command's title, with what it would act on or a tick.
+    fn menu_title(&self, command: Command) -> String {
+        let title = command.title();
+        let Some(session) = &self.session else { return title.into() };
+        let step = match command {
+            Command::Undo => session.document.undo_label(),
+            Command::Redo => session.document.redo_label(),
+            _ => None,
+        };
+        match (step, self.is_on(command)) {
+            (Some(step), _) => format!("{title}: {step}"),
+            (None, Some(true)) => format!("[x] {title}"),
+            (None, Some(false)) => format!("[  ] {title}"),
+            (None, None) => title.into(),
+        }
+    }
+
+    /// Name of the plate, whether it is saved, and what is under way.
+    fn status(&self, ui: &mut Ui) {
+        if let Some(session) = &self.session {
+            let mark = if session.document.is_changed() { "not saved" } else { "saved" };
+            ui.label(RichText::new(mark).weak());
+            let path = session.document.annotation_path();
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            ui.label(RichText::new(name).strong()).on_hover_text(path.display().to_string());
+            if let Some(fault) = session.document.journal_fault() {
+                let text = RichText::new("changes are not protected against a crash");
+                ui.label(text.color(trouble_color(ui.visuals().dark_mode))).on_hover_text(fault);
+            }
+        }
+        let session_work = self.session.as_ref().and_then(|session| session.work_under_way());
+        let opening = self.opening.as_ref().map(|job| job.what.clone());
+        if let Some(work) = opening.or(session_work) {
+            ui.spinner();
+            ui.label(work);
+        }
+    }
+}

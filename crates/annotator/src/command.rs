@@ -1,0 +1,284 @@
+//! Every command of the program: its name, its menu, its default keys. Menus, keys, the command list and the key editor are
+//! all made from this one table.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+/// A menu of the menu bar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Menu {
+    /// Opening, saving, exchange.
+    File,
+    /// Undo, and what acts on the selected point.
+    Edit,
+    /// What is drawn.
+    View,
+    /// Panels and their order.
+    Plate,
+    /// Skeleton and points.
+    Pose,
+    /// Footfalls and the fit.
+    Gait,
+    /// Help and settings.
+    Help,
+}
+
+impl Menu {
+    /// All menus in the order of the bar, with their titles.
+    pub const ALL: [(Self, &'static str); 7] = [
+        (Self::File, "File"),
+        (Self::Edit, "Edit"),
+        (Self::View, "View"),
+        (Self::Plate, "Plate"),
+        (Self::Pose, "Pose"),
+        (Self::Gait, "Gait"),
+        (Self::Help, "Help"),
+    ];
+}
+
+/// What the table says of a command.
+#[derive(Clone, Copy, Debug)]
+pub struct Description {
+    /// Name in the settings file; never changes.
+    pub id: &'static str,
+    /// Name for people.
+    pub title: &'static str,
+    /// Where it is found.
+    pub menu: Menu,
+    /// Keys unless the person chose others.
+    pub keys: &'static [KeyboardShortcut],
+}
+
+const fn plain(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+
+const fn shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::SHIFT, key)
+}
+
+const fn command(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+const fn command_shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
+}
+
+macro_rules! commands {
+    ($($(#[$about:meta])* $name:ident, $id:literal, $title:literal, $menu:ident, [$($key:expr),*];)*) => {
+        /// A command.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum Command {
+            $($(#[$about])* $name,)*
+        }
+
+        impl Command {
+            /// All commands in the order of their menus.
+            pub const ALL: &'static [Self] = &[$(Self::$name),*];
+
+            /// What the table says of it.
+            pub fn description(self) -> Description {
+                match self {
+                    $(Self::$name => Description {
+                        id: $id,
+                        title: $title,
+                        menu: Menu::$menu,
+                        keys: const { &[$($key),*] },
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+commands! {
+    /// A file dialog for a plate, an annotation or a picture.
+    Open, "open", "Open…", File, [command(Key::O)];
+    /// The catalogue of plates.
+    Browse, "browse", "Browse plates…", File, [command(Key::B)];
+    /// Writes both files.
+    Save, "save", "Save", File, [command(Key::S)];
+    /// Writes the annotation under another name.
+    SaveAs, "save-as", "Save as…", File, [command_shift(Key::S)];
+    /// Points from a file of another tool.
+    Import, "import", "Import points…", File, [];
+    /// Points into files of other tools.
+    Export, "export", "Export points…", File, [command(Key::E)];
+    /// Closes the plate.
+    Close, "close", "Close plate", File, [command(Key::W)];
+    /// Ends the program.
+    Quit, "quit", "Quit", File, [command(Key::Q)];
+
+    /// Takes the last step back.
+    Undo, "undo", "Undo", Edit, [command(Key::Z)];
+    /// Brings back the step taken back.
+    Redo, "redo", "Redo", Edit, [command_shift(Key::Z), command(Key::Y)];
+    /// The selected point is seen.
+    Visible, "visible", "Point is visible", Edit, [plain(Key::V)];
+    /// The selected point is guessed.
+    Occluded, "occluded", "Point is occluded", Edit, [plain(Key::O)];
+    /// The selected point is not there.
+    Absent, "absent", "Point is absent", Edit, [plain(Key::X)];
+    /// The selected point is forgotten.
+    DeletePoint, "delete-point", "Delete point", Edit, [plain(Key::Delete), plain(Key::Backspace)];
+    /// Moves the selected point.
+    NudgeLeft, "nudge-left", "Nudge left", Edit, [plain(Key::ArrowLeft)];
+    /// Moves the selected point.
+    NudgeRight, "nudge-right", "Nudge right", Edit, [plain(Key::ArrowRight)];
+    /// Moves the selected point.
+    NudgeUp, "nudge-up", "Nudge up", Edit, [plain(Key::ArrowUp)];
+    /// Moves the selected point.
+    NudgeDown, "nudge-down", "Nudge down", Edit, [plain(Key::ArrowDown)];
+    /// Moves the selected point a tenth.
+    NudgeLeftFine, "nudge-left-fine", "Nudge left, fine", Edit, [shift(Key::ArrowLeft)];
+    /// Moves the selected point a tenth.
+    NudgeRightFine, "nudge-right-fine", "Nudge right, fine", Edit, [shift(Key::ArrowRight)];
+    /// Moves the selected point a tenth.
+    NudgeUpFine, "nudge-up-fine", "Nudge up, fine", Edit, [shift(Key::ArrowUp)];
+    /// Moves the selected point a tenth.
+    NudgeDownFine, "nudge-down-fine", "Nudge down, fine", Edit, [shift(Key::ArrowDown)];
+
+    /// Splitting and order.
+    PagePlate, "page-plate", "Plate page", View, [plain(Key::F1)];
+    /// Scale, position, time.
+    PageCalibrate, "page-calibrate", "Calibrate page", View, [plain(Key::F2)];
+    /// Points and skeleton.
+    PagePose, "page-pose", "Pose page", View, [plain(Key::F3)];
+    /// Footfalls and numbers.
+    PageGait, "page-gait", "Gait page", View, [plain(Key::F4)];
+    /// The fitted stride, moving.
+    PagePlay, "page-play", "Play page", View, [plain(Key::F5)];
+    /// The panel after this one; around the stride.
+    NextPanel, "next-panel", "Next panel", View, [plain(Key::Period), plain(Key::PageDown)];
+    /// The panel before this one.
+    PreviousPanel, "previous-panel", "Previous panel", View, [plain(Key::Comma), plain(Key::PageUp)];
+    /// All panels at once, or one.
+    ContactSheet, "contact-sheet", "Contact sheet", View, [plain(Key::Tab)];
+    /// The whole panel in the window.
+    ZoomToFit, "zoom-to-fit", "Zoom to the whole panel", View, [plain(Key::Num0)];
+    /// Closer.
+    ZoomIn, "zoom-in", "Zoom in", View, [plain(Key::Plus), plain(Key::Equals)];
+    /// Farther.
+    ZoomOut, "zoom-out", "Zoom out", View, [plain(Key::Minus)];
+    /// The glass beside the pointer.
+    Magnifier, "magnifier", "Magnifier", View, [plain(Key::M)];
+    /// Skeletons of the neighbouring panels.
+    GhostSkeletons, "ghost-skeletons", "Neighbours' skeletons", View, [plain(Key::G)];
+    /// The photograph of the panel before, over this one.
+    GhostPhotograph, "ghost-photograph", "Neighbour's photograph", View, [shift(Key::G)];
+    /// Paths of the hooves over the stride.
+    HoofTrails, "hoof-trails", "Hoof trails", View, [plain(Key::H)];
+    /// The fit over the photograph.
+    ShowFit, "show-fit", "Fitted skeleton and residuals", View, [plain(Key::R)];
+    /// Photograph alone while it is off.
+    ShowMarks, "show-marks", "Points and lines", View, [plain(Key::Space)];
+    /// Light or dark.
+    Theme, "theme", "Light or dark", View, [];
+
+    /// Proposes the panels.
+    SplitAutomatically, "split", "Find panels", Plate, [];
+    /// A new panel.
+    AddPanel, "add-panel", "Add a panel", Plate, [];
+    /// Takes the panel away.
+    DeletePanel, "delete-panel", "Delete this panel", Plate, [];
+    /// Changes places with the panel before.
+    PanelEarlier, "panel-earlier", "Move panel earlier", Plate, [plain(Key::OpenBracket)];
+    /// Changes places with the panel after.
+    PanelLater, "panel-later", "Move panel later", Plate, [plain(Key::CloseBracket)];
+    /// The rows of the plate run from right to left.
+    MirrorOrder, "mirror-order", "Mirror the reading order", Plate, [];
+    /// The last panel becomes the first.
+    ReverseOrder, "reverse-order", "Reverse the order of time", Plate, [];
+    /// The animal faces the other way.
+    FlipFacing, "flip-facing", "Turn the facing round", Plate, [];
+    /// Finds the ground of every panel that has none.
+    FindGround, "find-ground", "Find the ground lines", Plate, [];
+
+    /// Click by click in a drawn order.
+    ToolGuided, "tool-guided", "Place points, guided", Pose, [plain(Key::P)];
+    /// The selected point where one clicks.
+    ToolFree, "tool-free", "Place points, freely", Pose, [shift(Key::P)];
+    /// The skeleton, by its joints.
+    ToolSkeleton, "tool-skeleton", "Drag the skeleton", Pose, [plain(Key::K)];
+    /// The next point in the drawn order.
+    NextPoint, "next-point", "Next point", Pose, [plain(Key::N)];
+    /// The point before.
+    PreviousPoint, "previous-point", "Previous point", Pose, [shift(Key::N)];
+    /// The same point of the other side.
+    OtherSide, "other-side", "Same point, other side", Pose, [plain(Key::S)];
+    /// Pose of the panel before.
+    CopyPrevious, "copy-previous", "Copy the previous panel's pose", Pose, [plain(Key::C)];
+    /// Points tracked from the panels before (or after).
+    ProposeTracked, "propose-tracked", "Propose by tracking", Pose, [plain(Key::T)];
+    /// Points between the panels before and after.
+    ProposeInterpolated, "propose-interpolated", "Propose by interpolation", Pose, [plain(Key::I)];
+    /// Points of the fit.
+    ProposeFitted, "propose-fitted", "Propose from the fit", Pose, [plain(Key::F)];
+    /// Near and off legs of one pair.
+    SwapFore, "swap-fore", "Swap near and off, forelegs", Pose, [];
+    /// Near and off legs of one pair.
+    SwapHind, "swap-hind", "Swap near and off, hindlegs", Pose, [];
+    /// Near and off of the whole panel.
+    SwapPanel, "swap-panel", "Swap near and off, all legs", Pose, [];
+    /// All points of the panel.
+    ClearPanel, "clear-panel", "Delete all points of this panel", Pose, [];
+    /// Starts or ends a blind second pass.
+    SecondPass, "second-pass", "Blind second pass", Pose, [];
+
+    /// Stance, swing, unknown.
+    ToggleNearFore, "toggle-near-fore", "Near fore down or up", Gait, [plain(Key::Num1)];
+    /// Stance, swing, unknown.
+    ToggleOffFore, "toggle-off-fore", "Off fore down or up", Gait, [plain(Key::Num2)];
+    /// Stance, swing, unknown.
+    ToggleNearHind, "toggle-near-hind", "Near hind down or up", Gait, [plain(Key::Num3)];
+    /// Stance, swing, unknown.
+    ToggleOffHind, "toggle-off-hind", "Off hind down or up", Gait, [plain(Key::Num4)];
+    /// Fits now.
+    FitNow, "fit", "Fit the stride", Gait, [command(Key::F)];
+    /// Fits whenever something changed.
+    FitAlways, "fit-always", "Fit while working", Gait, [];
+    /// The worst point.
+    WorstPoint, "worst-point", "Go to the worst point", Gait, [plain(Key::W)];
+    /// Moves, or stops.
+    PlayStride, "play", "Play or pause", Gait, [plain(Key::Enter)];
+
+    /// All commands by name.
+    Palette, "palette", "All commands…", Help, [command_shift(Key::P), command(Key::P)];
+    /// Which key does what.
+    Keys, "keys", "Keys…", Help, [command(Key::Comma)];
+    /// A short tour.
+    Tour, "tour", "Tour", Help, [];
+    /// A drawn plate to try things on.
+    OpenSpecimen, "specimen", "Open a specimen plate", Help, [];
+}
+
+impl Command {
+    /// The command of this name in the settings.
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|command| command.description().id == id)
+    }
+
+    /// Name for people.
+    pub fn title(self) -> &'static str {
+        self.description().title
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn names_and_default_keys_are_each_used_once() {
+        let ids: BTreeSet<_> = Command::ALL.iter().map(|c| c.description().id).collect();
+        let titles: BTreeSet<_> = Command::ALL.iter().map(|c| c.title()).collect();
+        assert_eq!((ids.len(), titles.len()), (Command::ALL.len(), Command::ALL.len()));
+        let keys: Vec<_> = Command::ALL.iter().flat_map(|c| c.description().keys).collect();
+        for (at, key) in keys.iter().enumerate() {
+            assert!(!keys[..at].contains(key), "{key:?} is used twice");
+        }
+        assert_eq!(Command::from_id("undo"), Some(Command::Undo));
+    }
+}

@@ -1,0 +1,175 @@
+//! Proposals: points tracked from known panels, and what is seen in the photographs without points. In the background.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use egui::Context;
+use muybridge_capture::{Draft, Keypoint, Keypoints, Placed};
+use muybridge_imaging::see::{Silhouette, Wall, silhouettes, walls};
+use muybridge_imaging::split::{Doubt, FoundPanel, split};
+use muybridge_imaging::track::{PanelPoints, Proposal, propose};
+use muybridge_imaging::PanelView;
+
+use crate::job::{Job, take_answer};
+use crate::picture::{PlateImages, Pyramid};
+use crate::toast::Messages;
+
+/// Longer side of the views that are looked at, px: silhouettes and tracking are as good as at full size (docs/plates.md).
+const VIEW_PX: u32 = 700;
+
+/// All panels of a plate as they are looked at.
+struct Looked {
+    quads_px: Vec<[[f64; 2]; 4]>,
+    views: Vec<PanelView>,
+    silhouettes: Vec<Silhouette>,
+    walls: Vec<Wall>,
+}
+
+/// What background work brings back.
+enum Answer {
+    Tracked { panel: u32, proposals: Vec<Proposal>, looked: Arc<Looked> },
+    Ground { lines: Vec<(u32, [[f64; 2]; 2])>, looked: Arc<Looked> },
+    Split { panels: Vec<(usize, FoundPanel)>, doubts: Vec<Doubt> },
+    Failed(String),
+}
+
+/// What is to be done with an answer.
+pub enum Found {
+    /// Points for a panel.
+    Points(u32, Vec<Proposal>),
+    /// Ground lines by panel, left to right, plate px.
+    Ground(Vec<(u32, [[f64; 2]; 2])>),
+    /// Panels of each image, and every reason to doubt them.
+    Panels(Vec<(usize, FoundPanel)>, Vec<Doubt>),
+}
+
+/// Proposals of a session.
+#[derive(Default)]
+pub struct Proposals {
+    running: Option<Job<Answer>>,
+    looked: Option<Arc<Looked>>,
+    quality: BTreeMap<(u32, Keypoint), (Placed, f64)>,
+}
+
+/// The pictures of a plate, all read.
+fn pyramids(images: &PlateImages) -> Option<Vec<Arc<Pyramid>>> {
+    (0..images.states().len()).map(|index| images.ready(index).cloned()).collect()
+}
+
+impl Proposals {
+    /// What is under way.
+    pub fn work(&self) -> Option<&str> {
+        self.running.as_ref().map(|job| job.what.as_str())
+    }
+
+    /// How sure tracking was of a point, 0 to 1, as long as nobody has moved it.
+    pub fn quality(&self, panel: u32, keypoint: Keypoint, placed: &Placed) -> Option<f64> {
+        let (was, quality) = self.quality.get(&(panel, keypoint))?;
+        (was == placed).then_some(*quality)
+    }
+
+    /// Looks for the panels of a plate.
+    pub fn split(&mut self, images: &PlateImages, context: &Context) {
+        let Some(pyramids) = pyramids(images).filter(|_| self.running.is_none()) else { return };
+        self.running = Some(Job::start("Finding panels", context, move || {
+            let (mut panels, mut doubts) = (Vec::new(), Vec::new());
+            for (image, pyramid) in pyramids.iter().enumerate() {
+                let found = split(pyramid.gray());
+                if pyramids.len() > 1 && !(found.is_certain() && found.panels.len() == 1) {
+                    panels.push((image, whole(pyramid.size_px())));
+                    continue;
+                }
+                panels.extend(found.panels.into_iter().map(|panel| (image, panel)));
+                doubts.extend(found.doubts);
+            }
+            Answer::Split { panels, doubts }
+        }));
+    }
+
+    /// Tracks from known panels, the one beside `panel` last, into it.
+    pub fn track(&mut self, draft: &Draft, known: Vec<u32>, panel: u32, images: &PlateImages, context: &Context) {
+        let Some(pyramids) = pyramids(images).filter(|_| self.running.is_none()) else { return };
+        let (draft, looked) = (draft.clone(), self.looked.clone());
+        self.running = Some(Job::start(format!("Tracking into panel {panel}"), context, move || {
+            let Some(looked) = look(&draft, &pyramids, looked) else { return no_view() };
+            let index = |number: u32| draft.manifest.panels.iter().position(|p| p.panel == number);
+            let points: Vec<(usize, &Keypoints)> = known
+                .iter()
+                .filter_map(|number| Some((index(*number)?, &draft.panel(*number)?.keypoints)))
+                .collect();
+            let known: Vec<PanelPoints> = points
+                .iter()
+                .map(|(at, points)| PanelPoints {
+                    view: &looked.views[*at],
+                    silhouette: Some(&looked.silhouettes[*at].mask),
+                    points,
+                })
+                .collect();
+            let Some(next) = index(panel) else { return no_view() };
+            let proposals = propose(&known, &looked.views[next], Some(&looked.silhouettes[next].mask));
+            Answer::Tracked { panel, proposals, looked: Arc::clone(&looked) }
+        }));
+    }
+
+    /// Looks for the ground line of every panel.
+    pub fn find_ground(&mut self, draft: &Draft, images: &PlateImages, context: &Context) {
+        let Some(pyramids) = pyramids(images).filter(|_| self.running.is_none()) else { return };
+        let (draft, looked) = (draft.clone(), self.looked.clone());
+        self.running = Some(Job::start("Finding ground lines", context, move || {
+            let Some(looked) = look(&draft, &pyramids, looked) else { return no_view() };
+            let lines = draft.manifest.panels.iter().zip(&looked.walls).zip(&looked.views);
+            let lines = lines.filter_map(|((panel, wall), view)| {
+                Some((panel.panel, wall.ground.as_ref()?.on_plate_px(view)))
+            });
+            Answer::Ground { lines: lines.collect(), looked: Arc::clone(&looked) }
+        }));
+    }
+
+    /// Takes what has been found.
+    pub fn finish(&mut self, messages: &mut Messages) -> Option<Found> {
+        let answer = take_answer(&mut self.running)?.unwrap_or_else(Answer::Failed);
+        match answer {
+            Answer::Tracked { panel, proposals, looked } => {
+                self.looked = Some(looked);
+                for proposal in &proposals {
+                    self.quality.insert((panel, proposal.keypoint), (proposal.placed, proposal.quality));
+                }
+                Some(Found::Points(panel, proposals))
+            }
+            Answer::Ground { lines, looked } => {
+                self.looked = Some(looked);
+                Some(Found::Ground(lines))
+            }
+            Answer::Split { panels, doubts } => Some(Found::Panels(panels, doubts)),
+            Answer::Failed(trouble) => {
+                messages.trouble(trouble);
+                None
+            }
+        }
+    }
+}
+
+fn no_view() -> Answer {
+    Answer::Failed("A panel's corners do not make a quadrilateral; correct them on the Plate page".into())
+}
+
+fn whole([width, height]: [u32; 2]) -> FoundPanel {
+    let [width, height] = [width, height].map(f64::from);
+    let quad_px = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
+    FoundPanel { quad_px, confidence: 1.0, row: 0, column: 0 }
+}
+
+/// Views and silhouettes of all panels: those made before, if the panels are the same.
+fn look(draft: &Draft, pyramids: &[Arc<Pyramid>], before: Option<Arc<Looked>>) -> Option<Arc<Looked>> {
+    let quads_px: Vec<_> = draft.manifest.panels.iter().map(|panel| panel.quad_px).collect();
+    if let Some(before) = before.filter(|before| before.quads_px == quads_px) {
+        return Some(before);
+    }
+    let view = |panel: &muybridge_capture::Panel| {
+        PanelView::new(pyramids.get(panel.image)?.gray(), panel.quad_px, VIEW_PX)
+    };
+    let views: Vec<PanelView> = draft.manifest.panels.iter().map(view).collect::<Option<_>>()?;
+    let silhouettes = silhouettes(&views);
+    let walls = walls(&views, &silhouettes);
+    Some(Arc::new(Looked { quads_px, views, silhouettes, walls }))
+}

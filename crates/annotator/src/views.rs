@@ -1,0 +1,13 @@
+//! The pages of the window.
+
+pub mod calibrate_page;
+pub mod figure_box;
+pub mod footfall_bar;
+pub mod gait_page;
+pub mod plate_page;
+pub mod play_page;
+pub mod pose_page;
+pub mod sheet;
+pub mod strip;
+pub mod tabs;
+pub mod welcome;
