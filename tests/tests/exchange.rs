@@ -79,7 +79,11 @@ fn what_is_exported_comes_back_onto_the_plate() {
             _ => "deeplabcut/labeled-data/sallie-gardner-1878/CollectedData_me.csv",
         };
         let run = import(&workspace, &[file], &["--into", SALLIE]).expect_code(0);
-        assert!(run.stdout.contains("312 points added, 0 replaced, 0 left away"), "{}", run.stdout);
+        assert!(
+            run.stdout.contains("312 points added, 0 replaced, 0 the same as before, 0 left away"),
+            "{}",
+            run.stdout
+        );
         assert_eq!(run.stderr, "", "{format}");
         let back = annotation(&workspace, &format!("annotations/{SALLIE}.json"));
         assert_eq!(back.plate, known.plate);
@@ -130,7 +134,11 @@ fn a_persons_points_stay_and_nothing_is_written_over_unasked() {
     std::fs::create_dir(workspace.path("other")).unwrap();
     let run =
         import(&workspace, &["mine.csv"], &["--into", SALLIE, "--out", "other/merged.json"]).expect_code(0);
-    assert!(run.stdout.contains("1 points added, 0 replaced, 1 left away"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("1 points added, 0 replaced, 0 the same as before, 1 left away"),
+        "{}",
+        run.stdout
+    );
     for said in
         ["no keypoint of ours is called that (tail)", "no panel of the plate (panel 44)", "dock of panel 3"]
     {

@@ -139,6 +139,9 @@ impl Footfalls {
     /// stride, and panels photographed after it closes, appear again a stride away. In rising order.
     pub fn shown(&self, side: NearOff, pair: Pair, [low, high]: [f64; 2]) -> Vec<ShownSpan> {
         let period = self.clock.closes_after_panels();
+        // A stride's width beyond the panels is as far as anybody looks.
+        let low = low.max(f64::from(self.clock.first()) - period);
+        let high = high.min(f64::from(self.clock.last()) + period);
         let mut shown = Vec::new();
         for (index, span) in self.lane(side, pair).spans.iter().enumerate() {
             let first = ((low - span.lift_off.at_panel) / period).floor() as i64;

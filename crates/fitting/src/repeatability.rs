@@ -68,6 +68,13 @@ impl Repeatability {
         (!points.is_empty()).then_some(Self { points, withers_height_m: calibration.withers_height_m?.value })
     }
 
+    /// Standard deviation of one coordinate of one pass, px, of points visible in both passes or of the others; none
+    /// without such points. Two passes scatter twice as much in variance as one, and a distance has two coordinates.
+    pub fn sd_px(&self, visible: bool) -> Option<f64> {
+        let px: Vec<f64> = self.points.iter().filter(|p| p.visible == visible).map(|p| p.px).collect();
+        (!px.is_empty()).then(|| rms(px.into_iter()) / 2.0)
+    }
+
     /// One entry per keypoint type that both passes placed, in the fixed order.
     pub fn by_keypoint(&self) -> Vec<KeypointRepeatability> {
         let of_type = |keypoint: Keypoint| {
@@ -91,8 +98,7 @@ impl fmt::Display for Repeatability {
             let group: Vec<&PointDistance> = self.points.iter().filter(|p| p.visible == visible).collect();
             let px: Vec<f64> = group.iter().map(|p| p.px).collect();
             let percent: Vec<f64> = group.iter().map(|p| 100.0 * p.metres / self.withers_height_m).collect();
-            // Two passes scatter twice as much in variance as one, and a distance has two coordinates.
-            let one_coordinate = rms(px.iter().copied()) / 2.0;
+            let one_coordinate = self.sd_px(visible).unwrap_or(0.0);
             writeln!(
                 f,
                 "{name}: {} points; distance median {:.1} px ({:.1} % of withers height), 90th percentile {:.1} px ({:.1} %); \

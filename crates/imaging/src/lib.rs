@@ -6,6 +6,7 @@
 //! plates are.
 //! Equal inputs give equal results; nothing here reads a clock or uses chance that is not seeded.
 
+pub mod acquire;
 pub mod fetch;
 mod frames;
 mod panel_view;

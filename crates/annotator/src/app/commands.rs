@@ -84,6 +84,7 @@ impl Annotator {
             C::Keys => self.key_editor = Some(KeyEditor::default()),
             C::Tour => self.tour = Some(Tour::default()),
             C::OpenSpecimen => self.leave(context, After::OpenSpecimen),
+            C::SecondPass => self.second_pass(context),
             _ => return false,
         }
         true
@@ -141,6 +142,7 @@ fn session_why_not(session: &Session, command: Command) -> Option<&'static str> 
         C::ProposeFitted | C::WorstPoint | C::PlayStride | C::PagePlay if session.fit.latest().is_none() => {
             Some("There is no fit yet; the Gait page says what is missing")
         }
+        C::SecondPass => super::second_pass_commands::why_not(session),
         C::ProposeTracked => session.why_not_track(),
         C::ProposeInterpolated => session.why_not_interpolate(),
         C::CopyPrevious => session.why_not_copy(),

@@ -90,11 +90,11 @@ impl Ground<'_> {
         else {
             return;
         };
-        let line = Stroke::new(1.0, colors.trunk.gamma_multiply(0.8));
+        let line = Stroke::new(1.5, colors.trunk);
         match points[..] {
             [] | [_] => {}
             [from, to] => _ = self.painter.line_segment([from, to], line),
-            _ => _ = self.painter.add(Shape::convex_polygon(points, colors.trunk.gamma_multiply(0.2), line)),
+            _ => _ = self.painter.add(Shape::convex_polygon(points, colors.trunk.gamma_multiply(0.4), line)),
         }
     }
 

@@ -82,7 +82,7 @@ fn only_what_is_seen_is_uploaded_and_little_of_it_in_one_frame() {
     let frames = settle(&ctx, |painter| textures.draw(painter, source, &view, Look::default()));
     let uploads: usize = frames.iter().map(|frame| frame.uploads.len()).sum();
     assert_eq!(uploads, 4);
-    // 2,000 x 1,500 px at 0.5: six tiles of 510 px and their cut neighbours, in more than one frame.
+    // 1333 x 933 px at 0.75: six tiles of level 0, in more than one frame.
     let view = ViewTransform { zoom: 0.75, origin: [0.0, 0.0] };
     let mut largest = 0;
     let frames = settle(&ctx, |painter| textures.draw(painter, source, &view, Look::default()));

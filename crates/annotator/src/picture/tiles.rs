@@ -48,7 +48,7 @@ impl TileKey {
         if self.squares { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
     }
 
-    /// First and last-but-one texel of the texture in the level, without the border, along x and y; none outside.
+    /// First texel of the tile in the level and the one after its last, along x and y, without the border; none outside.
     fn span(self, level: &RgbImage) -> Option<[[u32; 2]; 2]> {
         let along = |index: u32, size: u32| {
             let first = index.checked_mul(TILE)?;
@@ -81,14 +81,13 @@ impl TileKey {
     /// The texture's texels; at the picture's edge the border repeats the last ones.
     pub(super) fn cut(self, pyramid: &Pyramid, tones: &[u8; 256]) -> Option<ColorImage> {
         let level = pyramid.levels().get(self.level)?;
-        let [[left, right], [top, bottom]] = self.span(level)?;
+        let [[left, right], [top, _]] = self.span(level)?;
         let size = self.texture_size(pyramid)?;
         let mut texels: Vec<Color32> = Vec::with_capacity(size[0] * size[1]);
         let row_bytes = 3 * level.width() as usize;
         let first = left.saturating_sub(BORDER);
         let last = right.min(level.width() - 1);
         for y in (0..size[1] as u32).map(|y| (top + y).saturating_sub(BORDER).min(level.height() - 1)) {
-            debug_assert!(y <= bottom);
             let start = row_bytes * y as usize;
             let row = &level.as_raw()[start + 3 * first as usize..start + 3 * (last as usize + 1)];
             push_row(&mut texels, row, tones, left == 0, right == level.width());

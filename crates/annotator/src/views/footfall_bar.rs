@@ -208,7 +208,9 @@ fn follow(
         let to_panel = columns.panel(first, pointer.x);
         let stride = session.stride_numbers();
         session.preview("Footfall", |draft| {
-            stride.iter().for_each(|panel| drop(draft.panel_mut(*panel)));
+            for panel in &stride {
+                draft.panel_mut(*panel);
+            }
             draft.annotation = match drag {
                 BarDrag::Edge { leg, event, from_panel } => {
                     with_edge(&draft.annotation, clock, leg, event, [from_panel, to_panel])

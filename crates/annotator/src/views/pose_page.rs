@@ -68,6 +68,7 @@ fn hint(canvas: &PanelCanvas, session: &Session, page: &PageContext<'_>) {
 
 /// Tools, the next point, and the list of all.
 pub fn inspector(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
+    repeatability(ui, session);
     tools(ui, session, page);
     ui.separator();
     let selected = session.selected;
@@ -87,6 +88,35 @@ pub fn inspector(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>)
     point_list(ui, session);
     ui.separator();
     figure_box::show(ui, session);
+}
+
+/// How well points were placed twice, after a second pass, until it is put away.
+fn repeatability(ui: &mut Ui, session: &mut Session) {
+    let Some(repeatability) = session.repeatability.clone() else { return };
+    ui.group(|ui| {
+        ui.label(RichText::new("Placed twice").strong());
+        ui.label(repeatability.to_string());
+        Grid::new("placed twice").num_columns(3).striped(true).show(ui, |ui| {
+            for row in repeatability.by_keypoint() {
+                ui.label(colors::name(row.keypoint));
+                ui.label(format!("{:.1} px", row.median_px));
+                ui.label(format!("{:.1} cm", row.median_cm));
+                ui.end_row();
+            }
+        });
+        if ui.button("Use it as this plate's scatter").clicked() {
+            let [visible, occluded] = [true, false].map(|visible| repeatability.sd_px(visible));
+            session.edit("Scatter of placed points", |draft| {
+                let annotation = &mut draft.annotation;
+                annotation.visible_sd_px = visible.unwrap_or(annotation.visible_sd_px);
+                annotation.occluded_sd_px = occluded.unwrap_or(annotation.occluded_sd_px);
+            });
+            session.repeatability = None;
+        }
+        if ui.button("Put away").clicked() {
+            session.repeatability = None;
+        }
+    });
 }
 
 fn tools(ui: &mut Ui, session: &Session, page: &mut PageContext<'_>) {

@@ -3,7 +3,8 @@
 use egui::{Rect, Ui, pos2, vec2};
 
 use crate::app::PageContext;
-use crate::session::Session;
+use crate::session::{Page, Session};
+use crate::views::play_page;
 use crate::views::strip::thumbnail;
 
 /// Space below each photograph for its number, screen points.
@@ -21,7 +22,12 @@ pub fn show(ui: &mut Ui, session: &mut Session, _page: &mut PageContext<'_>) {
         let (row, column) = (at / columns, at % columns);
         let height = width / aspect + CAPTION;
         let corner = pos2(all.left() + column as f32 * width, all.top() + row as f32 * height);
-        thumbnail(ui, session, *number, Rect::from_min_size(corner, vec2(width, height)).shrink(3.0));
+        let rect = Rect::from_min_size(corner, vec2(width, height)).shrink(3.0);
+        thumbnail(ui, session, *number, rect);
+        if session.page == Page::Play && session.panel == *number {
+            let photograph = Rect::from_min_max(rect.min, rect.max - vec2(0.0, CAPTION));
+            play_page::draw_on_sheet(ui.painter(), session, photograph);
+        }
     }
 }
 

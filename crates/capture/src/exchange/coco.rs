@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::collect::{Collector, FoundPoint, Target};
+use super::collect::{Collector, FoundPoint, Origin, Said, Target};
 use super::format::parse_json;
 use super::layout::{Layout, PictureSource};
 use super::names::skeleton_edges;
 use super::notes::Skipped;
 use super::{ExchangeError, Format};
-use crate::annotation::{KeypointState, PlacedBy};
+use crate::annotation::KeypointState;
 use crate::files::to_stable_json;
 use crate::keypoint::{KEYPOINT_COUNT, Keypoint};
 use crate::manifest::Manifest;
@@ -206,8 +206,7 @@ fn points(names: &[String], keypoints: &[f64], collector: &mut Collector<'_>) ->
         points.push(FoundPoint {
             name: name.clone(),
             at: Some([triple[0], triple[1]]),
-            state,
-            by: PlacedBy::Hand,
+            said: Said { state: Some(state), by: Origin::Unsaid },
         });
     }
     points

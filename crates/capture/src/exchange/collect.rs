@@ -22,6 +22,28 @@ pub struct Import {
     pub panels: Vec<(u32, Keypoints)>,
     /// What was skipped and what was assumed, counted, one sentence each.
     pub notes: Vec<String>,
+    /// How much the files said of each point beyond its place.
+    pub(super) said: BTreeMap<(u32, Keypoint), Said>,
+}
+
+/// What a file says of a point beyond its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Said {
+    /// Seen or guessed; none where the format has no such thing.
+    pub(super) state: Option<KeypointState>,
+    /// Who placed it.
+    pub(super) by: Origin,
+}
+
+/// What a file says of who placed a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Origin {
+    /// It is written there for people to read and change.
+    Stated(PlacedBy),
+    /// It rides along in a key that the other tool does not show, and stays when a person moves the point there.
+    Carried(PlacedBy),
+    /// Nothing.
+    Unsaid,
 }
 
 impl Import {
@@ -48,13 +70,13 @@ pub(super) struct FoundPoint {
     pub(super) name: String,
     /// In the format's own pixels; none for a point declared absent.
     pub(super) at: Option<[f64; 2]>,
-    pub(super) state: KeypointState,
-    pub(super) by: PlacedBy,
+    pub(super) said: Said,
 }
 
 /// One point that was taken.
 struct Taken {
-    placed: Placed,
+    at_px: Option<[f64; 2]>,
+    said: Said,
     place: String,
     name: String,
 }
@@ -85,10 +107,17 @@ impl<'a> Collector<'a> {
 
     pub(super) fn finish(self) -> Import {
         let mut panels: BTreeMap<u32, Keypoints> = BTreeMap::new();
+        let mut said = BTreeMap::new();
         for ((panel, keypoint), taken) in self.taken {
-            panels.entry(panel).or_default().insert(keypoint, taken.placed);
+            let state = taken.said.state.unwrap_or(KeypointState::Visible);
+            let by = match taken.said.by {
+                Origin::Stated(by) | Origin::Carried(by) => by,
+                Origin::Unsaid => PlacedBy::Hand,
+            };
+            panels.entry(panel).or_default().insert(keypoint, Placed { at_px: taken.at_px, state, by });
+            said.insert((panel, keypoint), taken.said);
         }
-        Import { panels: panels.into_iter().collect(), notes: self.notes.sentences() }
+        Import { panels: panels.into_iter().collect(), notes: self.notes.sentences(), said }
     }
 
     /// Takes the points that a file has at one place (`place`: its row or entry, for messages).
@@ -159,8 +188,8 @@ impl<'a> Collector<'a> {
                 first_name: first.name.clone(),
             });
         }
-        let placed = Placed { at_px, state: point.state, by: point.by };
-        let taken = Taken { placed, place: format!("{file}: {place}"), name: short(&point.name) };
+        let place = format!("{file}: {place}");
+        let taken = Taken { at_px, said: point.said, place, name: short(&point.name) };
         self.taken.insert((number, keypoint), taken);
         Ok(())
     }

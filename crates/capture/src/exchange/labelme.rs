@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::collect::{Collector, FoundPoint, Target};
+use super::collect::{Collector, FoundPoint, Origin, Said, Target};
 use super::format::parse_json;
 use super::layout::{Layout, PictureSource, stem};
 use super::notes::{Skipped, short};
@@ -111,13 +111,9 @@ pub(super) fn read(file: &str, text: &str, collector: &mut Collector<'_>) -> Res
             continue;
         };
         let occluded = shape.flags.is_some_and(|flags| flags.get(OCCLUDED) == Some(&true));
-        let by = shape.by.as_deref().unwrap_or_default();
-        let point = FoundPoint {
-            at: Some(*at),
-            state: if occluded { KeypointState::Occluded } else { KeypointState::Visible },
-            by: provenance(by),
-            name: shape.label,
-        };
+        let state = if occluded { KeypointState::Occluded } else { KeypointState::Visible };
+        let by = shape.by.as_deref().and_then(provenance).map_or(Origin::Unsaid, Origin::Carried);
+        let point = FoundPoint { at: Some(*at), said: Said { state: Some(state), by }, name: shape.label };
         let target = Target::Picture {
             name: document.image_path.clone(),
             size_px: document.image_width.zip(document.image_height).map(|(width, height)| [width, height]),

@@ -1,6 +1,6 @@
 //! Our own table: one point a row, in plate px. Reads and writes all that a placed point has.
 
-use super::collect::{Collector, FoundPoint, Target};
+use super::collect::{Collector, FoundPoint, Origin, Said, Target};
 use super::notes::{Skipped, short};
 use super::table::{Rows, number};
 use super::{ExchangeError, Format};
@@ -46,10 +46,9 @@ pub(super) fn provenance_name(by: PlacedBy) -> &'static str {
     PROVENANCES.iter().find(|(_, known)| *known == by).map_or("", |(name, _)| name)
 }
 
-/// A provenance by its name; a person's, where nothing else is said.
-pub(super) fn provenance(name: &str) -> PlacedBy {
-    let found = PROVENANCES.iter().find(|(known, _)| known.eq_ignore_ascii_case(name.trim()));
-    found.map_or(PlacedBy::Hand, |(_, by)| *by)
+/// A provenance by its name.
+pub(super) fn provenance(name: &str) -> Option<PlacedBy> {
+    PROVENANCES.iter().find(|(known, _)| known.eq_ignore_ascii_case(name.trim())).map(|(_, by)| *by)
 }
 
 /// Reads a table.
@@ -57,15 +56,7 @@ pub(super) fn read(file: &str, text: &str, collector: &mut Collector<'_>) -> Res
     let mut rows = Rows::new(file, text);
     let Some((_, header)) = rows.next()? else { return Ok(()) };
     let width = header.len();
-    let columns = COLUMNS.map(|name| header.iter().position(|cell| cell.eq_ignore_ascii_case(name)));
-    if let Some(missing) = (0..NEEDED).find(|i| columns[*i].is_none()) {
-        let message = format!(
-            "no column `{}`; needed are {}, separated by commas",
-            COLUMNS[missing],
-            COLUMNS[..NEEDED].join(", ")
-        );
-        return Err(ExchangeError::content(file, "line 1", message));
-    }
+    let columns = columns(file, header)?;
     while let Some((place, row)) = rows.next()? {
         if row.len() != width {
             let message = format!("{} cells, but the header has {width}; correct the row", row.len());
@@ -78,23 +69,38 @@ pub(super) fn read(file: &str, text: &str, collector: &mut Collector<'_>) -> Res
         })?;
         let place_px = [number(file, &place, "x_px", cell(2))?, number(file, &place, "y_px", cell(3))?];
         let state = match STATES.iter().find(|(name, _)| name.eq_ignore_ascii_case(cell(4))) {
-            Some((_, state)) => *state,
-            None if cell(4).is_empty() => KeypointState::Visible,
+            Some((_, state)) => Some(*state),
+            None if cell(4).is_empty() => None,
             None => {
                 collector.notes.skip(Skipped::UnknownState, short(cell(4)));
                 continue;
             }
         };
         let at = match (place_px, state) {
-            (_, KeypointState::Absent) => None,
+            (_, Some(KeypointState::Absent)) => None,
             ([Some(x), Some(y)], _) if x.is_finite() && y.is_finite() => Some([x, y]),
             _ => {
                 collector.notes.skip(Skipped::NoPlace, place);
                 continue;
             }
         };
-        let point = FoundPoint { name: cell(1).into(), at, state, by: provenance(cell(5)) };
+        let by = provenance(cell(5)).map_or(Origin::Unsaid, Origin::Stated);
+        let point = FoundPoint { name: cell(1).into(), at, said: Said { state, by } };
         collector.take(file, &place, Format::Csv, &Target::Panel(panel), vec![point])?;
     }
     Ok(())
+}
+
+/// Where the header has each of our columns.
+fn columns(file: &str, header: &csv::StringRecord) -> Result<[Option<usize>; COLUMNS.len()], ExchangeError> {
+    let columns = COLUMNS.map(|name| header.iter().position(|cell| cell.eq_ignore_ascii_case(name)));
+    if let Some(missing) = (0..NEEDED).find(|i| columns[*i].is_none()) {
+        let message = format!(
+            "no column `{}`; needed are {}, separated by commas",
+            COLUMNS[missing],
+            COLUMNS[..NEEDED].join(", ")
+        );
+        return Err(ExchangeError::content(file, "line 1", message));
+    }
+    Ok(columns)
 }

@@ -28,7 +28,7 @@ pub(super) enum AnnotationsCommand {
     Compare(CompareArguments),
     /// Draw points, skeleton and fit over the photographs. Example: `muybridge annotations show sallie-gardner-1878`
     Show(ShowArguments),
-    /// Write points for DeepLabCut, COCO, labelme or as a table. Example: `muybridge annotations export sallie-gardner-1878 --format coco --out sallie`
+    /// Write points for `DeepLabCut`, COCO, labelme or as a table. Example: `muybridge annotations export sallie-gardner-1878 --format coco --out sallie`
     Export(ExportArguments),
     /// Take points over from such files. Example: `muybridge annotations import CollectedData_me.csv --into sallie-gardner-1878 --out mine.json`
     Import(ImportArguments),

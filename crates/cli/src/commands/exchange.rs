@@ -1,6 +1,7 @@
 //! `muybridge annotations import` and `export`: placed points from and to other annotation tools.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -22,7 +23,7 @@ const PLATES: &str = "plates";
 /// Names of formats on the command line.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum FormatName {
-    /// A DeepLabCut project (`CollectedData_<scorer>.csv`), and the same points with likelihoods.
+    /// A `DeepLabCut` project (`CollectedData_<scorer>.csv`), and the same points with likelihoods.
     Deeplabcut,
     /// COCO keypoints, one JSON file.
     Coco,
@@ -69,7 +70,7 @@ pub(super) struct ExportArguments {
     /// Write the pictures too (panels are cut out in grey).
     #[arg(long)]
     images: bool,
-    /// Who labelled, for DeepLabCut [default: the annotator's name]
+    /// Who labelled, for `DeepLabCut` [default: the annotator's name]
     #[arg(long, value_name = "NAME")]
     scorer: Option<String>,
     /// Write over files that are there and differ.
@@ -188,12 +189,13 @@ fn pictures(document: &Document, wanted: &[ExportPicture]) -> anyhow::Result<Vec
             PictureSource::Panel(number) => {
                 let panel = manifest.panels.iter().find(|panel| panel.panel == number);
                 let panel = panel.with_context(|| format!("there is no panel {number}"))?;
-                if !loaded.contains_key(&panel.image) {
-                    let plate = load_gray(&image_path(document, panel.image)?, LoadLimits::default())?;
-                    loaded.insert(panel.image, plate);
-                }
-                let view =
-                    loaded.get(&panel.image).and_then(|plate| PanelView::new(plate, panel.quad_px, u32::MAX));
+                let plate = match loaded.entry(panel.image) {
+                    Entry::Occupied(there) => there.into_mut(),
+                    Entry::Vacant(free) => {
+                        free.insert(load_gray(&image_path(document, panel.image)?, LoadLimits::default())?)
+                    }
+                };
+                let view = PanelView::new(plate, panel.quad_px, u32::MAX);
                 png(&view
                     .with_context(|| format!("panel {number} cannot be cut out; correct its corners"))?
                     .image)?
@@ -249,11 +251,12 @@ pub(super) fn run_import(annotation_path: &Path, arguments: &ImportArguments) ->
     }
     let mut annotation = document.draft().annotation.clone();
     let existing = if arguments.replace { Existing::Replace } else { Existing::KeepHand };
-    let Merged { added, replaced, kept } = imported.merge_into(&mut annotation, existing);
+    let Merged { added, replaced, same, kept } = imported.merge_into(&mut annotation, existing);
     annotation.plate = relative_path(out, document.manifest_path());
     write_json(out, &annotation)?;
     println!(
-        "{}: {added} points added, {replaced} replaced, {kept} left away where a person's point is there",
+        "{}: {added} points added, {replaced} replaced, {same} the same as before, \
+         {kept} left away where a person's point is there",
         out.display()
     );
     Ok(())

@@ -107,7 +107,47 @@ fn the_scatter_of_a_careful_hand_raises_next_to_nothing() {
     }
     let mut kinds: Vec<ConcernKind> = raised.iter().map(|c| c.kind).collect();
     kinds.sort();
+    println!("{} {kinds:?}", raised.len());
     assert!(raised.len() <= 14, "{} in 140 plates: {kinds:?}", raised.len());
+}
+
+#[test]
+fn nothing_in_a_draft_makes_a_check_or_the_footfalls_fail() {
+    let mut random = muybridge_core::Random::new(9);
+    let wild = [f64::NAN, f64::INFINITY, -1e300, 0.0, 7.5];
+    for round in 0..60 {
+        let mut plate = specimen(Gait::ALL[round % 7]);
+        let calibration = calibrate(&plate.manifest, &plate.annotation).unwrap();
+        let mut number = |count: usize| (random.uniform() * count as f64) as usize;
+        let annotation = &mut plate.annotation;
+        annotation.stride.first = [0, 1, 5, 12, u32::MAX][number(5)];
+        annotation.stride.last = [0, 1, 5, 12, u32::MAX][number(5)];
+        annotation.stride.closes_after_panels = Some(wild[number(5)]);
+        annotation.panels.truncate([0, 1, 2, 5, 12][number(5)]);
+        for panel in &mut annotation.panels {
+            let keypoint = Keypoint::all().nth(number(26)).unwrap();
+            let at_px = Some([wild[number(5)], wild[number(5)]]);
+            panel
+                .keypoints
+                .insert(keypoint, Placed { at_px, state: KeypointState::Visible, by: PlacedBy::Hand });
+            panel.ground_px = [panel.ground_px, None, Some([[wild[number(5)]; 2]; 2])][number(3)];
+        }
+        for (side, pair) in LANES {
+            let event = [Event::Strike, Event::LiftOff][number(2)];
+            annotation.instants.push(Instant { side, pair, event, at_panel: wild[number(5)] });
+        }
+        for calibration in [None, Some(&calibration)] {
+            before_fit(annotation, &plate.manifest, calibration);
+            let clock = StrideClock::new(annotation, calibration, None);
+            for leg in LANES {
+                let places = [wild[number(5)], wild[number(5)]];
+                crate::footfalls::with_edge(annotation, &clock, leg, Event::Strike, places);
+                crate::footfalls::with_span(annotation, &clock, leg, places);
+                crate::footfalls::without_span(annotation, &clock, leg, places[0]);
+                Footfalls::new(annotation, clock.clone()).shown(leg.0, leg.1, places);
+            }
+        }
+    }
 }
 
 /// Mean distance between near and off joints of a pair, withers heights.

@@ -55,7 +55,7 @@ pub fn with_edge(
         Event::Strike => spans[index].strike = by_hand,
         Event::LiftOff => spans[index].lift_off = by_hand,
     }
-    written(annotation, clock, &before, spans)
+    written(annotation, clock, &before, &spans)
 }
 
 /// Panels from the lift-off of a span to the strike of the next, which may be the same one a stride later.
@@ -105,7 +105,7 @@ pub fn with_span(
     ] {
         set_if_unknown(&mut changed, outside, (side, pair));
     }
-    written(&changed, clock, &before, spans)
+    written(&changed, clock, &before, &spans)
 }
 
 /// Index of the last stride panel before a place.
@@ -143,7 +143,7 @@ pub fn without_span(
     let Some(index) = before.span_at(clock, at_panel) else { return annotation.clone() };
     let mut spans = before.spans.clone();
     spans.remove(index);
-    written(annotation, clock, &before, spans)
+    written(annotation, clock, &before, &spans)
 }
 
 /// Sets the label of a leg in one panel and drops the instants of the leg that contradict its labels then.
@@ -168,13 +168,8 @@ fn drop_contradicting(annotation: &mut Annotation, clock: &StrideClock, (side, p
 }
 
 /// The annotation with a leg's spans; where they cannot be said, the annotation as it was.
-fn written(
-    annotation: &Annotation,
-    clock: &StrideClock,
-    before: &Lane,
-    spans: Vec<StanceSpan>,
-) -> Annotation {
-    for spans in [spans.clone(), kept_on_panels(clock, &spans)] {
+fn written(annotation: &Annotation, clock: &StrideClock, before: &Lane, spans: &[StanceSpan]) -> Annotation {
+    for spans in [spans.to_vec(), kept_on_panels(clock, spans)] {
         let changed = attempt(annotation, clock, before, &spans);
         let after = lane(&changed, clock, before.side, before.pair);
         if after.spans.len() == spans.len() {

@@ -205,9 +205,7 @@ pub(super) fn solve(problem: &PoseProblem<'_>, start: &PanelPose, steps: usize) 
         if moved < STEP_TOLERANCE {
             break;
         }
-        if std::env::var("TR").is_ok() { println!("   cost {cost:.6} dec {decrease:.3e} moved {moved:.2e} damping {damping:.1e} {curvature:?}"); }
     }
-    if std::env::var("TR").is_ok() { println!("END {cost}"); }
     x
 }
 

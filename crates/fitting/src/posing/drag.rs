@@ -16,7 +16,8 @@ use super::{PanelPose, PanelPoser};
 /// How much of the animal gives way to a handle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reach {
-    /// The limb, or the neck, that the handle is on.
+    /// The limb, or the neck, that the handle is on. Hip and shoulder, withers, back, croup and dock move the trunk all
+    /// the same.
     #[default]
     Limb,
     /// The trunk too, where the limb or the neck cannot reach.
@@ -33,22 +34,22 @@ pub struct DragOptions {
     pub pins: Vec<Keypoint>,
 }
 
-/// Standard deviation of the handle about the pointer, m: a few hundredths of a pixel of lag.
-const HANDLE_SD_M: f64 = 1e-3;
-/// Distance beyond which the pull does not grow, in those: a target out of reach cannot tear at what is pinned.
-const FULL_PULL_SD: f64 = 20.0;
+/// Standard deviation of the handle about the pointer, m: the pull of the other joints moves it by less.
+const HANDLE_SD_M: f64 = 1.2e-3;
+/// Distance beyond which the pull does not grow, in those: a target out of reach bends every joint as far as it goes, and
+/// yet cannot tear at what is pinned.
+const FULL_PULL_SD: f64 = 4.0;
 /// A handle is followed as far as this from its first place, m: more than the length of the animal.
 const FARTHEST_M: f64 = 4.0;
 /// The pointer's way is followed in pieces of at most this, m, so that a jump ends where a slow drag would.
 const PIECE_M: f64 = 0.15;
-/// Steps for each piece on the way, and at its end.
+/// Steps for each piece on the way, at its end, and from the start.
 const STEPS_ON_THE_WAY: usize = 3;
 const STEPS: usize = 40;
+const STEPS_AFRESH: usize = 25;
 /// Where two poses answer a target, the one that continues the motion is left for the other at this share of its cost:
 /// the equal ones of a joint that may bend either way are not to flicker.
 const CLEARLY_BETTER: f64 = 0.25;
-/// Cost below which no other pose is looked for: two joints bent by little more than their standard deviation.
-const EASY: f64 = 1.5;
 
 /// One gesture.
 #[derive(Clone, Debug)]
@@ -105,11 +106,10 @@ impl Drag {
             self.pose = solve(&self.problem(at), &self.pose, STEPS_ON_THE_WAY);
         }
         let problem = self.problem(target_m);
-        let continued = solve(&problem, &self.pose, STEPS);
-        let cost = problem.cost(&continued);
-        let afresh = (cost > EASY).then(|| solve(&problem, &self.start, STEPS));
-        let better = afresh.filter(|pose| problem.cost(pose) < CLEARLY_BETTER * cost);
-        self.pose = better.unwrap_or(continued);
+        let [continued, afresh] = [(&self.pose, STEPS), (&self.start, STEPS_AFRESH)]
+            .map(|(from, steps)| solve(&problem, from, steps));
+        let better = problem.cost(&afresh) < CLEARLY_BETTER * problem.cost(&continued);
+        self.pose = if better { afresh } else { continued };
         self.target_m = target_m;
     }
 

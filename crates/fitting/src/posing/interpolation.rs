@@ -20,7 +20,7 @@ pub struct SequencePanel {
     pub panel: u32,
     /// Its camera.
     pub camera: PanelCamera,
-    /// What is placed in it.
+    /// What is placed in it. Leave out what was itself interpolated.
     pub keypoints: Keypoints,
     /// Contact labels.
     pub contacts: LegContacts,

@@ -4,7 +4,7 @@ use muybridge_capture::{BodyPoint, Facing, Keypoint, Keypoints, LimbJoint, NearO
 use muybridge_core::{Pair, Skeleton};
 
 use crate::chain::Chain;
-use crate::layout::{BENDS, LOG_DOCK, LOG_SCALE, PANEL_DOF, SHARED, SLIDES, log_length};
+use crate::layout::{BENDS, LOG_DOCK, PANEL_DOF, SHARED, SLIDES, log_length};
 use crate::observation::{attachment, depth_m};
 use crate::weights::Weights;
 
@@ -137,6 +137,5 @@ fn shrunk(shown: &[Shown], weights: &Weights) -> [f64; SHARED] {
             lengths[*index] = drawn;
         }
     }
-    debug_assert!(lengths[LOG_SCALE] == scale);
     lengths.map(|value| value.clamp(LOG_BOUNDS[0], LOG_BOUNDS[1]))
 }

@@ -10,8 +10,8 @@ use super::lengths::median;
 
 /// Withers height of an animal that nobody has measured, m: assumed, the reference horse's.
 pub const ASSUMED_WITHERS_M: f64 = 1.60;
-/// Height of the withers as a share of a panel's height, where nothing else tells: Muybridge's panels were cut so that
-/// a horse fills about half of them.
+/// Height of the withers as a share of a panel's height, where nothing else tells: assumed, a horse and its rider fill
+/// most of a panel.
 const WITHERS_SHARE: f64 = 0.5;
 /// Height of the ground over a panel's lower edge as a share of its height, until the line is drawn.
 const GROUND_SHARE: f64 = 0.13;

@@ -97,7 +97,9 @@ fn draw_trails(canvas: &PanelCanvas, session: &Session) {
             let closed = trail.len() == numbers.len();
             trail.extend(closed.then(|| trail.first().copied()).flatten());
             let color = colors::side(side);
-            trail.iter().for_each(|at| drop(canvas.painter.circle_filled(*at, 2.2, color)));
+            for at in &trail {
+                canvas.painter.circle_filled(*at, 2.2, color);
+            }
             canvas.painter.line(trail, Stroke::new(1.0, color.gamma_multiply(0.7)));
         }
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{OCCLUDED_FROM, VISIBLE_FROM};
 use crate::annotation::{KeypointState, PlacedBy};
-use crate::exchange::collect::{Collector, FoundPoint, Target};
+use crate::exchange::collect::{Collector, FoundPoint, Origin, Said, Target};
 use crate::exchange::notes::{Skipped, short};
 use crate::exchange::table::{Rows, number};
 use crate::exchange::{ExchangeError, Format};
@@ -124,7 +124,7 @@ fn point(
             return None;
         }
     };
-    let (state, by) = if predicted {
+    let said = if predicted {
         let likelihood = likelihood.unwrap_or(0.0);
         if likelihood.is_nan() || likelihood < OCCLUDED_FROM {
             collector.notes.skip(Skipped::Unlikely, short(name));
@@ -134,11 +134,12 @@ fn point(
             "predictions were taken for tracked points: visible from a likelihood of {VISIBLE_FROM}, below it occluded"
         ));
         let visible = likelihood >= VISIBLE_FROM;
-        (if visible { KeypointState::Visible } else { KeypointState::Occluded }, PlacedBy::Tracked)
+        let state = if visible { KeypointState::Visible } else { KeypointState::Occluded };
+        Said { state: Some(state), by: Origin::Stated(PlacedBy::Tracked) }
     } else {
-        (KeypointState::Visible, PlacedBy::Hand)
+        Said { state: None, by: Origin::Unsaid }
     };
-    Some(FoundPoint { name: name.to_string(), at: Some(at), state, by })
+    Some(FoundPoint { name: name.to_string(), at: Some(at), said })
 }
 
 /// Reads `scorer`, `individuals` (in projects of several animals), `bodyparts` and `coords`.

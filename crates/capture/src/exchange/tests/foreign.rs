@@ -173,9 +173,51 @@ fn what_a_person_placed_stays_unless_it_is_to_be_replaced() {
     there.panels[0].keypoints.insert(dock, placed(PlacedBy::Hand));
     there.panels[0].keypoints.insert(poll, placed(PlacedBy::Interpolated));
     let mut all = there.clone();
-    assert_eq!(import.merge_into(&mut there, Existing::KeepHand), Merged { added: 1, replaced: 1, kept: 1 });
+    assert_eq!(
+        import.merge_into(&mut there, Existing::KeepHand),
+        Merged { added: 1, replaced: 1, same: 0, kept: 1 }
+    );
     assert_eq!(there.panels.iter().map(|panel| panel.panel).collect::<Vec<_>>(), [1, 3, 6]);
     assert_eq!(there.panels[0].keypoints.place(dock), Some([50.0, 50.0]));
-    assert_eq!(import.merge_into(&mut all, Existing::Replace), Merged { added: 1, replaced: 2, kept: 0 });
+    assert_eq!(
+        import.merge_into(&mut all, Existing::Replace),
+        Merged { added: 1, replaced: 2, same: 0, kept: 0 }
+    );
     assert_eq!(all.panels[0].keypoints.place(dock), Some([30.0, 40.0]));
+}
+
+#[test]
+fn a_point_that_was_not_moved_elsewhere_keeps_what_the_format_could_not_say() {
+    let known = filled(5);
+    for format in Format::ALL {
+        let export = exported(&known, format, None);
+        // Of the two tables of DeepLabCut the labels.
+        let labels = &files(&export)[..if format == Format::DeepLabCut { 1 } else { export.files.len() }];
+        let import = import(labels, None, &manifest(), &Cutouts, &BTreeMap::new()).unwrap();
+        let mut back = known.clone();
+        let merged = import.merge_into(&mut back, Existing::Replace);
+        assert_eq!(merged, Merged { same: import.point_count(), ..Merged::default() }, "{format:?}");
+        assert_eq!(back, known);
+    }
+}
+
+#[test]
+fn a_point_that_was_moved_in_labelme_was_placed_by_hand() {
+    let mut known = annotation();
+    let mut keypoints = Keypoints::default();
+    for (name, x) in [("dock", 40.0), ("poll", 50.0)] {
+        let placed = Placed { at_px: Some([x, 60.0]), state: KeypointState::Occluded, by: PlacedBy::Fitted };
+        keypoints.insert(Keypoint::from_name(name).unwrap(), placed);
+    }
+    known.panels.push(PanelAnnotation { keypoints, ..PanelAnnotation::empty(1) });
+    let mut moved = known.clone();
+    let poll = Keypoint::from_name("poll").unwrap();
+    let placed = Placed { at_px: Some([51.0, 60.0]), state: KeypointState::Occluded, by: PlacedBy::Fitted };
+    moved.panels[0].keypoints.insert(poll, placed);
+    let files = files(&exported(&moved, Format::Labelme, None));
+    let import = import(&files, None, &manifest(), &Cutouts, &BTreeMap::new()).unwrap();
+    let merged = import.merge_into(&mut known, Existing::KeepHand);
+    assert_eq!(merged, Merged { same: 1, replaced: 1, ..Merged::default() });
+    let back = known.panels[0].keypoints.get(poll).unwrap();
+    assert_eq!((back.at_px, back.by), (Some([51.0, 60.0]), PlacedBy::Hand));
 }

@@ -2,19 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use image::GrayImage;
 use indicatif::{HumanBytes, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use muybridge_capture::{
-    Catalogue, CataloguePlate, Facing, MANIFEST_SCHEMA, Manifest, PlateImage, cache_folder, hash_file,
-    write_atomically, write_json,
-};
+use muybridge_capture::{Catalogue, CataloguePlate, Facing, Manifest, cache_folder, write_json};
 use muybridge_core::Gait;
+use muybridge_imaging::acquire::{
+    AcquireError, OwnPlate, catalogue_identifier, find_panels, from_catalogue, from_files,
+};
 use muybridge_imaging::fetch::{FetchLimits, Progress, StoredPlate, fetch, stored};
-use muybridge_imaging::{LoadLimits, frames, load_gray};
+use muybridge_imaging::{LoadLimits, load_gray};
 
-use super::source::{find_panels, identifier, stem};
+use super::source::stem;
 use super::split::print_panels;
 use super::{CATALOGUE, gait};
 
@@ -136,7 +136,7 @@ fn fetch_one(
         .iter()
         .find(|plate| plate.number == number)
         .context("not in the catalogue; `muybridge plates list` shows what is")?;
-    let id = identifier(number);
+    let id = catalogue_identifier(number);
     let limits = FetchLimits {
         pixels: arguments.max_megapixels * 1_000_000,
         bytes: arguments.max_megabytes * 1_000_000,
@@ -150,7 +150,7 @@ fn fetch_one(
     };
     let StoredPlate { path, sha256, width_px, height_px, .. } = &picture;
     println!("{} ({width_px} x {height_px} px, sha256 {sha256})", path.display());
-    let manifest = from_catalogue(&id, catalogue, plate, &picture);
+    let manifest = from_catalogue(catalogue, plate, &picture);
     record(&arguments.places.manifest(&id), manifest, &[picture.path])
 }
 
@@ -204,46 +204,6 @@ fn show(bar: &ProgressBar, progress: &Progress) {
     }
 }
 
-fn from_catalogue(
-    id: &str,
-    catalogue: &Catalogue,
-    plate: &CataloguePlate,
-    picture: &StoredPlate,
-) -> Manifest {
-    Manifest {
-        schema: MANIFEST_SCHEMA,
-        id: id.into(),
-        catalogue_number: Some(plate.number.to_string()),
-        title: format!("Animal Locomotion, plate {}: {}, {}", plate.number, plate.animal, plate.action),
-        animal: plate.animal.clone(),
-        gait: plate.gait,
-        date: "1887".into(),
-        source: format!("{} (object {}), IIIF service {}", catalogue.holder, plate.object_id, plate.iiif),
-        holder: catalogue.holder.clone(),
-        licence: catalogue.licence.clone(),
-        printed: Vec::new(),
-        facing: None,
-        images: vec![PlateImage {
-            file: file_name(&picture.path),
-            sha256: picture.sha256.clone(),
-            width_px: picture.width_px,
-            height_px: picture.height_px,
-        }],
-        panels: Vec::new(),
-        calibration: None,
-    }
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
-}
-
-/// A picture file's entry in a manifest.
-fn plate_image(path: &Path, file: &str) -> anyhow::Result<PlateImage> {
-    let (width_px, height_px) = load_gray(path, LoadLimits::default())?.dimensions();
-    Ok(PlateImage { file: file.into(), sha256: hash_file(path)?, width_px, height_px })
-}
-
 /// Finds the panels and writes the manifest; one that is there is kept if it speaks of the same pictures.
 fn record(path: &Path, mut manifest: Manifest, files: &[PathBuf]) -> anyhow::Result<()> {
     if path.exists() {
@@ -264,8 +224,8 @@ fn record(path: &Path, mut manifest: Manifest, files: &[PathBuf]) -> anyhow::Res
         .map(|file| Ok(load_gray(file, LoadLimits::default())?))
         .collect::<anyhow::Result<_>>()?;
     let found = find_panels(&pictures)?;
-    print_panels(&found);
-    manifest.panels = found.panels;
+    manifest.panels.clone_from(&found.panels);
+    print_panels(&found.into());
     write_json(path, &manifest)?;
     println!("{}", path.display());
     Ok(())
@@ -274,59 +234,24 @@ fn record(path: &Path, mut manifest: Manifest, files: &[PathBuf]) -> anyhow::Res
 /// Takes a person's own scan or frames over into the cache and writes a manifest.
 pub(super) fn run_add(arguments: &AddArguments) -> anyhow::Result<()> {
     let id = arguments.id.clone().unwrap_or_else(|| stem(&arguments.file));
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    if id.is_empty() || id.starts_with('.') || !id.chars().all(plain) {
-        bail!("--id {id:?}: letters, digits, dots, dashes and underscores only");
-    }
-    let sources =
-        if arguments.file.is_dir() { frames(&arguments.file)? } else { vec![arguments.file.clone()] };
-    let cache = arguments.places.cache()?;
-    let (mut images, mut files) = (Vec::new(), Vec::new());
-    for source in &sources {
-        // Read before anything is written: what is no picture is refused here.
-        let name = if arguments.file.is_dir() {
-            format!("{id}/{}", file_name(source))
-        } else {
-            let ending = source.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
-            format!("{id}{ending}")
-        };
-        images.push(plate_image(source, &name)?);
-        files.push(cache.join(name));
-    }
-    for ((source, target), image) in sources.iter().zip(&files).zip(&images) {
-        copy(source, target, &image.sha256)?;
-    }
-    let manifest = Manifest {
-        schema: MANIFEST_SCHEMA,
-        title: arguments.title.clone(),
-        animal: arguments.animal.clone(),
+    let plate = OwnPlate {
+        id: id.clone(),
         gait: arguments.gait,
+        animal: arguments.animal.clone(),
+        title: arguments.title.clone(),
         source: arguments.source.clone(),
         licence: arguments.licence.clone(),
         facing: arguments.facing,
-        id: id.clone(),
-        catalogue_number: None,
-        date: String::new(),
-        holder: String::new(),
-        printed: Vec::new(),
-        images,
-        panels: Vec::new(),
-        calibration: None,
     };
-    record(&arguments.places.manifest(&id), manifest, &files)
-}
-
-/// Copies a file unless it is there already; another file of the same name is not overwritten.
-fn copy(source: &Path, target: &Path, sha256: &str) -> anyhow::Result<()> {
-    if target.exists() {
-        if hash_file(target)? != sha256 {
-            bail!("{}: another picture of this name is there; choose another --id", target.display());
+    let cache = arguments.places.cache()?;
+    let (manifest, files) = from_files(&arguments.file, plate, &cache).map_err(|error| match error {
+        AcquireError::Identifier { id } => {
+            anyhow!("--id {id:?}: letters, digits, dots, dashes and underscores only")
         }
-        return Ok(());
-    }
-    if let Some(folder) = target.parent() {
-        std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
-    }
-    let bytes = std::fs::read(source).with_context(|| format!("{}: cannot be read", source.display()))?;
-    Ok(write_atomically(target, &bytes)?)
+        AcquireError::Taken { path } => {
+            anyhow!("{}: another picture of this name is there; choose another --id", path.display())
+        }
+        error => error.into(),
+    })?;
+    record(&arguments.places.manifest(&id), manifest, &files)
 }

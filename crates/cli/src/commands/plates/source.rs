@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use image::GrayImage;
 use muybridge_capture::{Manifest, Panel, hash_file, locate_image};
-use muybridge_imaging::split::{Doubt, split};
+use muybridge_imaging::acquire::{FoundPanels, catalogue_identifier, find_panels};
+use muybridge_imaging::split::Doubt;
 use muybridge_imaging::{LoadLimits, frames, load_gray};
 
 /// Folders in which an identifier is looked up.
@@ -30,9 +31,10 @@ pub(super) struct Panels {
     pub(super) doubts: Vec<(usize, Doubt)>,
 }
 
-/// Identifier of a plate of *Animal Locomotion*.
-pub(super) fn identifier(number: u32) -> String {
-    format!("animal-locomotion-{number}")
+impl From<FoundPanels> for Panels {
+    fn from(found: FoundPanels) -> Self {
+        Self { panels: found.panels, confidence: Some(found.confidence), doubts: found.doubts }
+    }
 }
 
 /// Name of a file or folder without its ending.
@@ -52,7 +54,7 @@ impl PlateSource {
         if path.is_file() && path.extension().is_none_or(|extension| extension != "json") {
             return Ok(Self { id: stem(path), manifest: None, files: vec![path.to_path_buf()] });
         }
-        let id = name.parse().map_or_else(|_| name.to_string(), identifier);
+        let id = name.parse().map_or_else(|_| name.to_string(), catalogue_identifier);
         let in_folders = FOLDERS.map(|folder| Path::new(folder).join(format!("{id}.json")));
         let manifest = [path.to_path_buf()].into_iter().chain(in_folders).find(|path| path.is_file());
         match manifest {
@@ -95,40 +97,7 @@ impl PlateSource {
             Some((_, manifest)) if !manifest.panels.is_empty() => {
                 Ok(Panels { panels: manifest.panels.clone(), confidence: None, doubts: Vec::new() })
             }
-            _ => find_panels(pictures).with_context(|| self.id.clone()),
+            _ => Ok(find_panels(pictures).with_context(|| self.id.clone())?.into()),
         }
     }
-}
-
-/// Finds the panels of a plate's pictures, numbered in reading order.
-pub(super) fn find_panels(pictures: &[GrayImage]) -> anyhow::Result<Panels> {
-    let (mut panels, mut confidence, mut doubts) = (Vec::new(), Vec::new(), Vec::new());
-    for (image, picture) in pictures.iter().enumerate() {
-        let found = split(picture);
-        if pictures.len() > 1 && !(found.is_certain() && found.panels.len() == 1) {
-            // A frame of a folder shows one photograph, whatever is in it.
-            panels.push(whole(panels.len() as u32 + 1, image, picture));
-            confidence.push(1.0);
-            continue;
-        }
-        doubts.extend(found.doubts.into_iter().map(|doubt| (image, doubt)));
-        for panel in found.panels {
-            panels.push(Panel { panel: panels.len() as u32 + 1, image, quad_px: rounded(panel.quad_px) });
-            confidence.push(panel.confidence);
-        }
-    }
-    if panels.is_empty() {
-        bail!("no panel found; draw them by hand in the manifest (`panels[].quad_px`)");
-    }
-    Ok(Panels { panels, confidence: Some(confidence), doubts })
-}
-
-fn whole(panel: u32, image: usize, picture: &GrayImage) -> Panel {
-    let (width, height) = (f64::from(picture.width()), f64::from(picture.height()));
-    Panel { panel, image, quad_px: [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]] }
-}
-
-/// To a tenth of a pixel, as manifests have them.
-fn rounded(quad_px: [[f64; 2]; 4]) -> [[f64; 2]; 4] {
-    quad_px.map(|corner| corner.map(|v| (10.0 * v).round() / 10.0))
 }

@@ -7,8 +7,9 @@ use clap::Args;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use image::{DynamicImage, GrayImage, Rgb, imageops};
 use muybridge_capture::{Panel, write_json};
+use muybridge_imaging::acquire::find_panels;
 
-use super::source::{Panels, PlateSource, find_panels};
+use super::source::{Panels, PlateSource};
 use crate::commands::canvas::{Canvas, write_picture};
 
 /// Longer side of a drawn plate, px.
@@ -41,7 +42,7 @@ pub(in crate::commands) struct SplitArguments {
 pub(super) fn run_split(arguments: &SplitArguments) -> anyhow::Result<()> {
     let source = PlateSource::find(&arguments.plate)?;
     let pictures = source.pictures()?;
-    let found = find_panels(&pictures)?;
+    let found = Panels::from(find_panels(&pictures)?);
     print_panels(&found);
     let out = arguments
         .out

@@ -74,11 +74,8 @@ fn handle_goes_where_the_pointer_is() {
     }
     misses.sort_by(|a, b| a.0.total_cmp(&b.0));
     let reached = misses.iter().filter(|(px, _)| *px < 0.5).count();
-    println!(
-        "reached {reached} of {tries}; 99 % within {:.3} px; worst {:?}",
-        misses[tries * 99 / 100].0,
-        &misses[tries - 8..]
-    );
+    let [most, worst] = [tries * 99 / 100, tries - 1].map(|i| misses[i].0);
+    println!("reached {reached} of {tries}; 99 % within {most:.3} px, worst {worst:.3} px");
     assert!(reached as f64 >= 0.95 * f64::from(tries as u32));
 }
 
@@ -173,7 +170,7 @@ fn coming_back_brings_the_first_pose_back() {
     let posed = all_posed();
     let mut random = Random::new(14);
     let mut apart = Vec::new();
-    for _ in 0..300 {
+    for _ in 0..200 {
         let (poser, start) = &posed[(random.uniform() * posed.len() as f64) as usize % posed.len()];
         let handle = random_handle(&mut random);
         let at = poser.keypoint_px(start, handle);
@@ -189,7 +186,7 @@ fn coming_back_brings_the_first_pose_back() {
         }
         let gap =
             |a: &PanelPose, b: &PanelPose| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        if gap(drag.pose(), start) >= 1e-4 { println!("GAP {handle} by {way:?} {}", gap(drag.pose(), start)); }
+        assert!(gap(drag.pose(), start) < 1e-4, "{handle} by {way:?}");
         apart.push(gap(&half_way[0], &half_way[1]));
     }
     let apart = sorted(apart);
@@ -203,7 +200,7 @@ fn small_moves_of_the_pointer_are_small_moves_of_the_animal() {
     let posed = all_posed();
     let mut random = Random::new(15);
     let mut ratios = Vec::new();
-    for _ in 0..300 {
+    for _ in 0..120 {
         let (poser, start) = &posed[(random.uniform() * posed.len() as f64) as usize % posed.len()];
         let handle = random_handle(&mut random);
         let at = poser.keypoint_px(start, handle);
@@ -248,7 +245,6 @@ fn one_answer_is_quick() {
                 let before = Instant::now();
                 drag.to(at);
                 small_ms.push(before.elapsed().as_secs_f64() * 1e3);
-                if small_ms[small_ms.len()-1] > 0.4 { println!("SLOW {handle} {:?} {:.3} miss {}", reach, small_ms[small_ms.len()-1], distance(at, poser.keypoint_px(drag.pose(), handle))); }
             }
             let before = Instant::now();
             drag.to([random.between(-1e6, 1e6), random.between(-1e6, 1e6)]);
@@ -291,6 +287,21 @@ fn pins_stay_and_the_whole_figure_moves_and_tilts() {
     assert!(distance(poser.keypoint_px(&tilted, croup), about) < 1e-9);
     assert!(poser.keypoint_px(&tilted, withers)[1] < poser.keypoint_px(start, withers)[1], "the head rises");
     assert_eq!(poser.tilted(start, about, f64::NAN), *start);
+}
+
+#[test]
+fn whole_figure_reaches_farther_than_a_limb() {
+    let specimen = Specimen::load("walk");
+    let (poser, start) = &specimen.posed()[5];
+    let handle = Keypoint::hoof(NearOff::Near, Pair::Fore);
+    let at = poser.keypoint_px(start, handle);
+    let target = [at[0] + 1.4 * poser.camera.px_per_m, at[1]];
+    let [limb, whole] = [Reach::Limb, Reach::Whole].map(|reach| {
+        let pose = *Drag::begin(poser, start, handle, &DragOptions { reach, pins: Vec::new() }).to(target);
+        distance(poser.keypoint_px(&pose, handle), target) / poser.camera.px_per_m
+    });
+    println!("out of reach by {limb:.2} m, with the whole figure by {whole:.2} m");
+    assert!(whole < limb - 0.05);
 }
 
 #[test]
