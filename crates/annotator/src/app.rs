@@ -277,7 +277,8 @@ fn plate_ui(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     Panel::top("pages").show(ui, |ui| views::tabs::show(ui, session, page));
     Panel::bottom("strip").resizable(false).show(ui, |ui| views::strip::show(ui, session, page));
     Panel::right("inspector").default_size(310.0).size_range(260.0..=460.0).show(ui, |ui| {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match session.page {
+        let scroll = egui::ScrollArea::vertical().id_salt(session.page as usize).auto_shrink(false);
+        scroll.show(ui, |ui| match session.page {
             Page::Plate => views::plate_page::inspector(ui, session, page),
             Page::Calibrate => views::calibrate_page::inspector(ui, session, page),
             Page::Pose => views::pose_page::inspector(ui, session, page),

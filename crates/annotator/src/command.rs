@@ -153,7 +153,7 @@ commands! {
     /// The panel before this one.
     PreviousPanel, "previous-panel", "Previous panel", View, [plain(Key::Comma), plain(Key::PageUp)];
     /// All panels at once, or one.
-    ContactSheet, "contact-sheet", "Contact sheet", View, [plain(Key::Tab)];
+    ContactSheet, "contact-sheet", "Contact sheet", View, [plain(Key::A)];
     /// The whole panel in the window.
     ZoomToFit, "zoom-to-fit", "Zoom to the whole panel", View, [plain(Key::Num0)];
     /// Closer.

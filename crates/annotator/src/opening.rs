@@ -28,6 +28,12 @@ pub enum Opened {
 /// # Errors
 /// In words: which file, what is wrong, what to do.
 pub fn open(path: &Path, journals: Option<&Path>) -> Result<Opened, String> {
+    if path.to_str().is_none() {
+        return Err(format!(
+            "{}: its name is no Unicode text; rename the file or its folder",
+            path.display()
+        ));
+    }
     let metadata = std::fs::metadata(path)
         .map_err(|error| format!("{}: cannot be opened ({error}); check the path", path.display()))?;
     if metadata.is_dir() {
@@ -37,9 +43,15 @@ pub fn open(path: &Path, journals: Option<&Path>) -> Result<Opened, String> {
             Err(error) => Err(error.to_string()),
         };
     }
+    if !metadata.is_file() {
+        return Err(format!("{}: neither a file nor a folder; check the path", path.display()));
+    }
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
         if metadata.len() > LONGEST_TEXT {
-            return Err(format!("{}: far too long for an annotation; is this the right file?", path.display()));
+            return Err(format!(
+                "{}: far too long for an annotation; is this the right file?",
+                path.display()
+            ));
         }
         return open_document(path, journals);
     }

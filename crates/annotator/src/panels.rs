@@ -1,7 +1,6 @@
 //! Changes to the panels of a plate, their order and their ground lines.
 
 use muybridge_capture::{Draft, Keypoint, Panel};
-use muybridge_imaging::split::FoundPanel;
 
 /// The same point of the other side; points of the trunk have none and stay.
 pub fn other_side(keypoint: Keypoint) -> Keypoint {
@@ -14,15 +13,8 @@ pub fn other_side(keypoint: Keypoint) -> Keypoint {
 }
 
 /// Takes found panels over, numbered in reading order. Panels that were there are replaced; points stay where they are.
-pub fn take_found(draft: &mut Draft, found: &[(usize, FoundPanel)]) {
-    if found.is_empty() {
-        return;
-    }
-    draft.manifest.panels = found
-        .iter()
-        .enumerate()
-        .map(|(i, (image, panel))| Panel { panel: i as u32 + 1, image: *image, quad_px: panel.quad_px })
-        .collect();
+pub fn take_found(draft: &mut Draft, found: Vec<Panel>) {
+    draft.manifest.panels = found;
     span_all(draft);
 }
 

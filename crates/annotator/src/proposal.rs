@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use egui::Context;
+use image::GrayImage;
 use muybridge_capture::{Draft, Keypoint, Keypoints, Placed};
 use muybridge_imaging::see::{Silhouette, Wall, silhouettes, walls};
-use muybridge_imaging::split::{Doubt, FoundPanel, split};
+use muybridge_imaging::acquire::{FoundPanels, find_panels};
 use muybridge_imaging::track::{PanelPoints, Proposal, propose};
 use muybridge_imaging::PanelView;
 
@@ -29,7 +30,8 @@ struct Looked {
 enum Answer {
     Tracked { panel: u32, proposals: Vec<Proposal>, looked: Arc<Looked> },
     Ground { lines: Vec<(u32, [[f64; 2]; 2])>, looked: Arc<Looked> },
-    Split { panels: Vec<(usize, FoundPanel)>, doubts: Vec<Doubt> },
+    Uprights { lines: Uprights, looked: Arc<Looked> },
+    Split(FoundPanels),
     Failed(String),
 }
 
@@ -39,15 +41,19 @@ pub enum Found {
     Points(u32, Vec<Proposal>),
     /// Ground lines by panel, left to right, plate px.
     Ground(Vec<(u32, [[f64; 2]; 2])>),
-    /// Panels of each image, and every reason to doubt them.
-    Panels(Vec<(usize, FoundPanel)>, Vec<Doubt>),
+    /// Panels, and every reason to doubt them.
+    Panels(FoundPanels),
 }
+
+/// Uprights of the wall by panel, each from its top to its foot, plate px.
+pub type Uprights = Vec<(u32, Vec<[[f64; 2]; 2]>)>;
 
 /// Proposals of a session.
 #[derive(Default)]
 pub struct Proposals {
     running: Option<Job<Answer>>,
     looked: Option<Arc<Looked>>,
+    uprights: Option<Uprights>,
     quality: BTreeMap<(u32, Keypoint), (Placed, f64)>,
 }
 
@@ -72,17 +78,8 @@ impl Proposals {
     pub fn split(&mut self, images: &PlateImages, context: &Context) {
         let Some(pyramids) = pyramids(images).filter(|_| self.running.is_none()) else { return };
         self.running = Some(Job::start("Finding panels", context, move || {
-            let (mut panels, mut doubts) = (Vec::new(), Vec::new());
-            for (image, pyramid) in pyramids.iter().enumerate() {
-                let found = split(pyramid.gray());
-                if pyramids.len() > 1 && !(found.is_certain() && found.panels.len() == 1) {
-                    panels.push((image, whole(pyramid.size_px())));
-                    continue;
-                }
-                panels.extend(found.panels.into_iter().map(|panel| (image, panel)));
-                doubts.extend(found.doubts);
-            }
-            Answer::Split { panels, doubts }
+            let pictures: Vec<&GrayImage> = pyramids.iter().map(|pyramid| pyramid.gray()).collect();
+            find_panels(&pictures).map_or_else(|error| Answer::Failed(error.to_string()), Answer::Split)
         }));
     }
 
@@ -125,6 +122,25 @@ impl Proposals {
         }));
     }
 
+    /// Looks for the uprights of every panel's wall; [`Proposals::take_uprights`] has them when they are found.
+    pub fn find_uprights(&mut self, draft: &Draft, images: &PlateImages, context: &Context) {
+        let Some(pyramids) = pyramids(images).filter(|_| self.running.is_none()) else { return };
+        let (draft, looked) = (draft.clone(), self.looked.clone());
+        self.running = Some(Job::start("Finding uprights", context, move || {
+            let Some(looked) = look(&draft, &pyramids, looked) else { return no_view() };
+            let walls = draft.manifest.panels.iter().zip(&looked.walls).zip(&looked.views);
+            let lines = walls.map(|((panel, wall), view)| {
+                (panel.panel, wall.uprights.iter().map(|line| line.on_plate_px(view)).collect())
+            });
+            Answer::Uprights { lines: lines.collect(), looked: Arc::clone(&looked) }
+        }));
+    }
+
+    /// Uprights that were found since the last call.
+    pub fn take_uprights(&mut self) -> Option<Uprights> {
+        self.uprights.take()
+    }
+
     /// Takes what has been found.
     pub fn finish(&mut self, messages: &mut Messages) -> Option<Found> {
         let answer = take_answer(&mut self.running)?.unwrap_or_else(Answer::Failed);
@@ -140,7 +156,12 @@ impl Proposals {
                 self.looked = Some(looked);
                 Some(Found::Ground(lines))
             }
-            Answer::Split { panels, doubts } => Some(Found::Panels(panels, doubts)),
+            Answer::Uprights { lines, looked } => {
+                self.looked = Some(looked);
+                self.uprights = Some(lines);
+                None
+            }
+            Answer::Split(found) => Some(Found::Panels(found)),
             Answer::Failed(trouble) => {
                 messages.trouble(trouble);
                 None
@@ -151,12 +172,6 @@ impl Proposals {
 
 fn no_view() -> Answer {
     Answer::Failed("A panel's corners do not make a quadrilateral; correct them on the Plate page".into())
-}
-
-fn whole([width, height]: [u32; 2]) -> FoundPanel {
-    let [width, height] = [width, height].map(f64::from);
-    let quad_px = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
-    FoundPanel { quad_px, confidence: 1.0, row: 0, column: 0 }
 }
 
 /// Views and silhouettes of all panels: those made before, if the panels are the same.

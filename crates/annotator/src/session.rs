@@ -14,6 +14,7 @@ use crate::fit_state::FitState;
 use crate::picture::{PlateImages, PlateTextures, Source, ViewTransform};
 use crate::proposal::Proposals;
 use crate::second_pass::SecondPass;
+use crate::views::calibrate_page::CalibrateState;
 use crate::views::footfall_bar::BarDrag;
 use crate::views::play_page::PlayState;
 use crate::views::pose_page::PoseDrag;
@@ -123,6 +124,8 @@ pub struct Session {
     pub pose_drag: Option<PoseDrag>,
     /// A drag on the footfall bar.
     pub bar_drag: Option<BarDrag>,
+    /// Tools of the Calibrate page.
+    pub calibrate: CalibrateState,
     /// The small figure.
     pub figure: FigureView,
     /// The moving stride.
@@ -159,6 +162,7 @@ impl Session {
             plate_view: None,
             pose_drag: None,
             bar_drag: None,
+            calibrate: CalibrateState::default(),
             figure: FigureView::new(muybridge_core::Side::Right),
             play: PlayState::default(),
             preview: None,
@@ -207,6 +211,7 @@ impl Session {
     /// Forgets the change under way.
     pub fn cancel(&mut self) {
         (self.pose_drag, self.bar_drag) = (None, None);
+        self.calibrate.let_go();
         if self.preview.take().is_some() {
             self.state += 1;
         }

@@ -9,6 +9,9 @@ const AT_ONCE: usize = 4;
 /// Messages that are kept to be looked up.
 const KEPT: usize = 200;
 
+/// Longest message, characters: a damaged file may hold a word of megabytes, which would be quoted.
+const LONGEST: usize = 4000;
+
 /// How much a message matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weight {
@@ -45,7 +48,11 @@ impl Messages {
         self.add(text.into(), Weight::Trouble);
     }
 
-    fn add(&mut self, text: String, weight: Weight) {
+    fn add(&mut self, mut text: String, weight: Weight) {
+        if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+            text.truncate(end);
+            text.push('…');
+        }
         // The same again replaces the first: a held key must not fill the window.
         self.messages.retain(|message| message.text != text);
         self.messages.push(Message { text, weight, until_s: None });

@@ -13,7 +13,7 @@ mod save;
 use std::path::{Path, PathBuf};
 
 use crate::annotation::{ANNOTATION_SCHEMA, Annotation};
-use crate::files::{FileError, Hash, hash_file, read_json};
+use crate::files::{FileError, Hash, hash_bytes, hash_file, read_json, to_stable_json};
 use crate::manifest::Manifest;
 use crate::validation::{Plate, PlateError, check_draft};
 
@@ -48,7 +48,6 @@ pub struct Document {
     on_disk: OnDisk,
     history: History,
     journal: Option<Journal>,
-    journal_fault: Option<String>,
     revision: u64,
 }
 
@@ -64,7 +63,7 @@ impl Document {
         let manifest = Manifest::read(&manifest_path)?;
         check_draft(annotation_path, &annotation, &manifest)?;
         let on_disk = OnDisk::of(&manifest_path, annotation_path);
-        let draft = Draft { manifest, annotation };
+        let draft = Draft { manifest, annotation }.rounded().ok_or_else(|| not_finite(annotation_path))?;
         Self::begin(manifest_path, annotation_path.to_path_buf(), draft.clone(), draft, on_disk, journals)
     }
 
@@ -80,7 +79,7 @@ impl Document {
         journals: Option<&Path>,
     ) -> Result<Self, DocumentError> {
         let annotation = draft::empty_annotation(&manifest, relative_path(annotation_path, manifest_path));
-        let draft = Draft { manifest, annotation };
+        let draft = Draft { manifest, annotation }.rounded().ok_or_else(|| not_finite(manifest_path))?;
         let on_disk = OnDisk::of(manifest_path, annotation_path);
         let paths = (manifest_path.to_path_buf(), annotation_path.to_path_buf());
         Self::begin(paths.0, paths.1, draft.clone(), draft, on_disk, journals)
@@ -100,12 +99,12 @@ impl Document {
             on_disk: head.on_disk,
             history: History::default(),
             journal: Some(journal),
-            journal_fault: None,
             revision: 0,
         };
         for record in records {
             document.replay(record);
         }
+        document.know_what_was_written();
         Ok(document)
     }
 
@@ -125,13 +124,25 @@ impl Document {
             on_disk,
             history: History::default(),
             journal: None,
-            journal_fault: None,
             revision: 0,
         };
         if let Some(folder) = journals {
             document.journal = Some(Journal::create(folder, &document.head())?);
         }
         Ok(document)
+    }
+
+    /// A save that was cut short may have written a file already: that change on disk is this document's own.
+    fn know_what_was_written(&mut self) {
+        let ours = |path: &Path, text: String| {
+            hash_file(path).ok().filter(|on_disk| *on_disk == hash_bytes(text.as_bytes()))
+        };
+        if let Some(hash) = ours(&self.manifest_path, to_stable_json(&self.draft.manifest)) {
+            self.on_disk.manifest = Some(hash);
+        }
+        if let Some(hash) = ours(&self.annotation_path, to_stable_json(&self.draft.annotation)) {
+            self.on_disk.annotation = Some(hash);
+        }
     }
 
     fn head(&self) -> journal::Head {
@@ -172,15 +183,17 @@ impl Document {
 
     /// Why changes are not protected against a crash, if they are not.
     pub fn journal_fault(&self) -> Option<&str> {
-        self.journal_fault.as_deref()
+        self.journal.as_ref()?.fault()
     }
 
     /// Makes a change, as one step that can be undone. Places are rounded to a hundredth of a pixel. Whether anything
-    /// changed.
+    /// changed: a change with a number that is not finite is not made, and the plate that the annotation names is changed
+    /// by [`Document::save_as`] alone.
     pub fn edit(&mut self, label: &str, change: impl FnOnce(&mut Draft)) -> bool {
         let mut after = self.draft.clone();
         change(&mut after);
-        after.round();
+        after.annotation.plate.clone_from(&self.draft.annotation.plate);
+        let Some(after) = after.rounded() else { return false };
         let Some(step) = history::Step::between(label, &self.draft, &after) else { return false };
         self.record(&Record::Edit { label: label.into(), parts: step.redo.clone() });
         self.history.push(step);
@@ -227,8 +240,9 @@ impl Document {
             }
             Record::Undo => drop(self.history.undo(&mut self.draft)),
             Record::Redo => drop(self.history.redo(&mut self.draft)),
-            Record::Saved { on_disk, annotation_path } => {
+            Record::Saved { on_disk, annotation_path, plate } => {
                 self.annotation_path = annotation_path;
+                self.draft.annotation.plate = plate;
                 self.on_disk = on_disk;
                 self.saved = self.draft.clone();
             }
@@ -236,12 +250,11 @@ impl Document {
         self.revision += 1;
     }
 
-    /// Writes to the journal; where that fails, work goes on, the fault is shown, and the next change starts a new journal.
+    /// Writes to the journal; where that fails, work goes on, the fault is shown, and the next change tries again.
     fn record(&mut self, record: &Record) {
-        let head = self.journal_fault.is_some().then(|| self.head());
-        let Some(journal) = &mut self.journal else { return };
-        let restarted = head.map_or(Ok(()), |head| journal.restart(&head));
-        self.journal_fault = restarted.and_then(|()| journal.append(record)).err().map(|e| e.to_string());
+        if let Some(journal) = &mut self.journal {
+            journal.append(record);
+        }
     }
 
     /// The two documents as a validated plate, ready to be calibrated and fitted.
@@ -261,6 +274,11 @@ impl Document {
             journal.remove();
         }
     }
+}
+
+fn not_finite(path: &Path) -> DocumentError {
+    let (path, field) = (path.to_path_buf(), "document".into());
+    DocumentError::File(FileError::Parse { path, field, message: "holds a number that is not finite".into() })
 }
 
 /// Why a document cannot be opened.

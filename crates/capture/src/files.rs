@@ -1,5 +1,6 @@
 //! Files: reading with the field named, stable JSON text, atomic writing, hashes.
 
+use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -55,20 +56,39 @@ pub enum FileError {
     },
 }
 
+/// Longest text that is read, bytes: five hundred times the longest document known to us.
+const LONGEST_TEXT: u64 = 100_000_000;
+
 /// SHA-256 of a file, lower-case hexadecimal.
 pub type Hash = String;
 
 /// Reads a text file.
 ///
 /// # Errors
-/// When the file cannot be read, is no UTF-8, or is empty.
+/// When the file cannot be read, is no UTF-8, is empty, or longer than a hundred megabytes.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
-    let text = std::fs::read_to_string(path)
+    let read = |mut file: File| {
+        let mut text = String::new();
+        if (&mut file).take(LONGEST_TEXT).read_to_string(&mut text)? as u64 == LONGEST_TEXT {
+            return Err(std::io::ErrorKind::FileTooLarge.into());
+        }
+        Ok(text)
+    };
+    let text = open_file(path)
+        .and_then(read)
         .map_err(|source| FileError::Read { path: path.to_path_buf(), source })?;
     if text.trim().is_empty() {
         return Err(FileError::Empty { path: path.to_path_buf() });
     }
     Ok(text)
+}
+
+/// Opens a file for reading. Pipes and devices are refused: they could be waited for, or read, for ever.
+fn open_file(path: &Path) -> std::io::Result<File> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("not a file"));
+    }
+    File::open(path)
 }
 
 /// Reads a document whose first level has a `schema` number.
@@ -193,7 +213,15 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     file.as_file().sync_all().map_err(write_error)?;
     set_default_permissions(file.as_file()).map_err(write_error)?;
     file.persist(path).map_err(|error| write_error(error.error))?;
+    sync_folder(folder);
     Ok(())
+}
+
+/// Waits until a folder's names are on disk, where the system can say so: a new name must outlive a power cut, too.
+pub(crate) fn sync_folder(folder: &Path) {
+    if cfg!(unix) {
+        File::open(folder).and_then(|folder| folder.sync_all()).ok();
+    }
 }
 
 /// Temporary files are private to their owner; a document is readable to all, as an ordinary new file is.
@@ -227,7 +255,7 @@ pub(crate) fn hash_bytes(bytes: &[u8]) -> Hash {
 /// When the file cannot be read.
 pub fn hash_file(path: &Path) -> Result<Hash, FileError> {
     let read_error = |source| FileError::Read { path: path.to_path_buf(), source };
-    let mut file = std::fs::File::open(path).map_err(read_error)?;
+    let mut file = open_file(path).map_err(read_error)?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 16];
     loop {

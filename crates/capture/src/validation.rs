@@ -21,6 +21,14 @@ const DURATIONS_S: [f64; 2] = [1e-4, 10.0];
 const SPACINGS_M: [f64; 2] = [1e-3, 100.0];
 /// Widest and highest image: four times the largest scan of a plate known to us.
 const LARGEST_IMAGE_PX: u32 = 60_000;
+/// Highest number of a panel, and most images: twenty times the most of any plate known to us.
+const MOST_PANELS: u32 = 1000;
+/// Most instants, and most marks of a panel: as many as no person places.
+const MOST_ENTRIES: usize = 10_000;
+/// Longest of the texts a person writes, bytes.
+const LONGEST_TEXT: usize = 10_000;
+/// Faults that are told; where there are more, the file is not what it should be as a whole.
+const MOST_FAULTS: usize = 100;
 /// No point of a plate lies farther from its corner than this, px.
 const FARTHEST_PX: f64 = 1e6;
 /// A point may lie this far outside its panel, px: hooves and noses touch the mount.
@@ -56,8 +64,17 @@ pub enum PlateError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The documents are readable, but wrong.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    #[error("{}", listed(.0))]
     Faults(Vec<Fault>),
+}
+
+/// The first faults in words, a line each.
+fn listed(faults: &[Fault]) -> String {
+    let mut lines: Vec<String> = faults.iter().take(MOST_FAULTS).map(ToString::to_string).collect();
+    if faults.len() > MOST_FAULTS {
+        lines.push(format!("and {} more", faults.len() - MOST_FAULTS));
+    }
+    lines.join("\n")
 }
 
 /// Whether an image file was there to be compared with its hash.
@@ -167,11 +184,20 @@ impl Manifest {
     /// When the file cannot be read or parsed, or with every fault found, in document order.
     pub fn read(path: &Path) -> Result<Self, PlateError> {
         let manifest: Self = read_json(path, MANIFEST_SCHEMA)?;
-        let mut faults = Faults { path: path.to_path_buf(), found: Vec::new() };
-        faults.identifier(&manifest);
-        faults.manifest(&manifest);
-        if faults.found.is_empty() { Ok(manifest) } else { Err(PlateError::Faults(faults.found)) }
+        check_manifest(path, &manifest)?;
+        Ok(manifest)
     }
+}
+
+/// What must hold of a manifest, finished or not.
+///
+/// # Errors
+/// With every fault found.
+pub(crate) fn check_manifest(path: &Path, manifest: &Manifest) -> Result<(), PlateError> {
+    let mut faults = Faults { path: path.to_path_buf(), found: Vec::new() };
+    faults.identifier(manifest);
+    faults.manifest(manifest);
+    if faults.found.is_empty() { Ok(()) } else { Err(PlateError::Faults(faults.found)) }
 }
 
 /// What must hold of an annotation, finished or not, for a program to show and change it.
@@ -235,6 +261,11 @@ impl Faults {
         }
     }
 
+    fn texts<'a>(&mut self, field: &str, mut texts: impl Iterator<Item = &'a String>) {
+        let good = texts.all(|text| text.len() <= LONGEST_TEXT);
+        self.check(good, None, field, "must be at most 10000 bytes long");
+    }
+
     /// The identifier names output files and strides, so it must be a plain name, and one manifest's alone.
     fn identifier(&mut self, manifest: &Manifest) {
         let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
@@ -247,6 +278,16 @@ impl Faults {
 
     fn manifest(&mut self, manifest: &Manifest) {
         self.check(!manifest.images.is_empty(), None, "images", "a plate needs at least one image");
+        let Manifest { title, animal, date, source, holder, licence, printed, .. } = manifest;
+        let texts = [title, animal, date, source, holder, licence];
+        self.texts("printed and all other texts", texts.into_iter().chain(printed));
+        let message = format!("must be at most {MOST_PANELS}");
+        if manifest.panels.iter().any(|panel| panel.panel > MOST_PANELS) {
+            return self.add(None, "panels", format!("panel numbers {message}"));
+        }
+        if manifest.images.len() > MOST_PANELS as usize {
+            return self.add(None, "images", message);
+        }
         for (i, image) in manifest.images.iter().enumerate() {
             let field = format!("images[{i}]");
             self.check(
@@ -412,6 +453,20 @@ impl Faults {
             [("visible_sd_px", annotation.visible_sd_px), ("occluded_sd_px", annotation.occluded_sd_px)]
         {
             self.check(sd > 0.0 && sd <= 1000.0, None, field, "must be more than 0 and at most 1000 px");
+        }
+        self.texts("annotator and notes", annotation.notes.iter().chain([&annotation.annotator]));
+        let most = annotation.panels.iter().map(|panel| panel.marks.len()).max().unwrap_or(0);
+        if most.max(annotation.instants.len()) > MOST_ENTRIES {
+            return self.add(None, "marks and instants", format!("must be at most {MOST_ENTRIES}"));
+        }
+        let span = annotation.stride;
+        let numbers = annotation.panels.iter().map(|panel| panel.panel).chain([span.first, span.last]);
+        if numbers.max() > Some(MOST_PANELS) {
+            return self.add(None, "panels", format!("panel numbers must be at most {MOST_PANELS}"));
+        }
+        for (i, instant) in annotation.instants.iter().enumerate() {
+            let good = (0.0..=f64::from(MOST_PANELS) + 1.0).contains(&instant.at_panel);
+            self.check(good, None, &format!("instants[{i}].at_panel"), "must be a place among the panels");
         }
         let mut last = 0;
         for panel in &annotation.panels {

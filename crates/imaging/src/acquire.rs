@@ -1,5 +1,6 @@
 //! A plate's manifest from what was fetched of a catalogue, or from a person's own scan or frames; and its panels.
 
+use std::borrow::Borrow;
 use std::path::{Path, PathBuf};
 
 use image::GrayImage;
@@ -94,9 +95,9 @@ pub fn catalogue_identifier(number: u32) -> String {
 ///
 /// # Errors
 /// When no panel is found.
-pub fn find_panels(pictures: &[GrayImage]) -> Result<FoundPanels, AcquireError> {
+pub fn find_panels<P: Borrow<GrayImage>>(pictures: &[P]) -> Result<FoundPanels, AcquireError> {
     let (mut panels, mut confidence, mut doubts) = (Vec::new(), Vec::new(), Vec::new());
-    for (image, picture) in pictures.iter().enumerate() {
+    for (image, picture) in pictures.iter().map(Borrow::borrow).enumerate() {
         let found = split(picture);
         if pictures.len() > 1 && !(found.is_certain() && found.panels.len() == 1) {
             // A frame of a folder shows one photograph, whatever is in it.

@@ -7,6 +7,7 @@
 //! Equal inputs give equal results; nothing here reads a clock or uses chance that is not seeded.
 
 pub mod acquire;
+mod cutouts;
 pub mod fetch;
 mod frames;
 mod panel_view;
@@ -16,6 +17,7 @@ pub mod specimen;
 pub mod split;
 pub mod track;
 
+pub use cutouts::Cutouts;
 pub use frames::frames;
 pub use panel_view::{PanelTransform, PanelView};
 pub use picture::{LoadLimits, PictureError, load_gray, load_rgb};

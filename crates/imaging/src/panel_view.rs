@@ -72,6 +72,12 @@ fn apply(m: &[[f64; 3]; 3], [x, y]: Point) -> Point {
     [u / w, v / w]
 }
 
+/// Width and height of a quadrilateral: the means of opposite sides, px.
+pub(crate) fn side_lengths_px(quad_px: &[Point; 4]) -> [f64; 2] {
+    let side = |a: usize, b: usize| (quad_px[a][0] - quad_px[b][0]).hypot(quad_px[a][1] - quad_px[b][1]);
+    [0.5 * (side(0, 1) + side(3, 2)), 0.5 * (side(0, 3) + side(1, 2))]
+}
+
 /// One photograph, squared up.
 #[derive(Clone, Debug)]
 pub struct PanelView {
@@ -88,8 +94,7 @@ impl PanelView {
     /// side has at most `longest_px`; where it is smaller, the plate is averaged over each pixel of the view.
     /// None when the quadrilateral is not convex or smaller than a pixel.
     pub fn new(plate: &GrayImage, quad_px: [Point; 4], longest_px: u32) -> Option<Self> {
-        let side = |a: usize, b: usize| (quad_px[a][0] - quad_px[b][0]).hypot(quad_px[a][1] - quad_px[b][1]);
-        let (width, height) = (0.5 * (side(0, 1) + side(3, 2)), 0.5 * (side(0, 3) + side(1, 2)));
+        let [width, height] = side_lengths_px(&quad_px);
         let scale = (f64::from(longest_px) / width.max(height)).min(1.0);
         let size = [width, height].map(|v| (v * scale).round().max(1.0));
         let transform = PanelTransform::new(quad_px, size)?;

@@ -96,10 +96,11 @@ pub fn load_rgb(path: &Path, limits: LoadLimits) -> Result<RgbImage, PictureErro
 fn load(path: &Path, limits: LoadLimits) -> Result<DynamicImage, PictureError> {
     let read_error = |source| PictureError::Read { path: path.to_path_buf(), source };
     let damaged = |source| PictureError::Damaged { path: path.to_path_buf(), source };
-    let mut file = std::fs::File::open(path).map_err(read_error)?;
-    if file.metadata().map_err(read_error)?.is_dir() {
-        return Err(read_error(std::io::ErrorKind::IsADirectory.into()));
+    // Anything but a file could keep its reader waiting for ever.
+    if !std::fs::metadata(path).map_err(read_error)?.is_file() {
+        return Err(read_error(std::io::Error::other("not a file")));
     }
+    let mut file = std::fs::File::open(path).map_err(read_error)?;
     // By content: a scan's extension is often wrong.
     let reader = ImageReader::new(BufReader::new(&file)).with_guessed_format().map_err(read_error)?;
     let format = reader.format().ok_or_else(|| PictureError::UnknownKind { path: path.to_path_buf() })?;

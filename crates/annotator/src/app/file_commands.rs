@@ -68,7 +68,7 @@ impl Annotator {
             SaveError::ChangedOnDisk { .. } => {
                 self.dialog = Some(Dialog::Overwrite { trouble: error.to_string(), save_as, after });
             }
-            SaveError::File(error) => self.messages.trouble(error.to_string()),
+            error => self.messages.trouble(error.to_string()),
         }
     }
 

@@ -339,10 +339,10 @@ impl Session {
                 messages.note(format!("Ground found in {} panels; drag its ends where it is off", lines.len()));
                 self.edit("Find the ground lines", |draft| panels::take_ground(draft, &lines));
             }
-            Some(Found::Panels(found, doubts)) => {
-                messages.note(format!("{} panels found", found.len()));
-                doubts.iter().for_each(|doubt| messages.trouble(doubt.to_string()));
-                self.edit("Find panels", |draft| panels::take_found(draft, &found));
+            Some(Found::Panels(found)) => {
+                messages.note(format!("{} panels found", found.panels.len()));
+                found.doubts.iter().for_each(|(_, doubt)| messages.trouble(doubt.to_string()));
+                self.edit("Find panels", |draft| panels::take_found(draft, found.panels));
             }
             None => {}
         }

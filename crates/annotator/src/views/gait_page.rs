@@ -51,8 +51,11 @@ fn clickable_row(ui: &mut Ui, height: f32, name: &str) -> (Rect, Response) {
     (rect, response)
 }
 
-/// Shows a point on the pose page.
+/// Shows a point on the pose page, unless its panel was taken away since the fit.
 fn jump(session: &mut Session, panel: u32, keypoint: Option<Keypoint>) {
+    if session.place_of(panel).is_none() {
+        return;
+    }
     session.page = Page::Pose;
     session.shown.sheet = false;
     session.go_to(panel);

@@ -172,6 +172,7 @@ fn set_phase(session: &mut Session, motion: &Motion<'_>, phase: f64) {
     session.play.phase = phase.rem_euclid(1.0);
     if let Some(panel) = motion.panel_near(session.play.phase)
         && panel != session.panel
+        && session.place_of(panel).is_some()
     {
         session.go_to(panel);
     }
@@ -188,6 +189,7 @@ fn controls(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>, moti
         for (title, steps) in [("Panel before", -1), ("Panel after", 1)] {
             if ui.button(title).clicked()
                 && let Some(panel) = motion.panel_after(session.panel, steps)
+                && session.place_of(panel).is_some()
             {
                 session.play.is_playing = false;
                 session.go_to(panel);

@@ -12,6 +12,7 @@ const CAPTION: f32 = 16.0;
 
 /// All panels as large as they fit.
 pub fn show(ui: &mut Ui, session: &mut Session, _page: &mut PageContext<'_>) {
+    ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
     let all = ui.available_rect_before_wrap().shrink(6.0);
     let numbers = session.panel_numbers();
     let Some(first) = session.place_of(*numbers.first().unwrap_or(&1)) else { return };

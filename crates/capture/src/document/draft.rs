@@ -1,6 +1,8 @@
 //! The two documents together, and the parts in which one state differs from another.
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::{Number, Value};
 
 use crate::annotation::{
     ANNOTATION_SCHEMA, Annotation, Keypoints, LegContacts, PanelAnnotation, PanelUse, StanceLabel, StrideSpan,
@@ -90,9 +92,9 @@ impl Draft {
         &mut panels[at]
     }
 
-    /// Rounds places to the precision of the files: a hundredth of a pixel, a thousandth of a panel.
-    pub(crate) fn round(&mut self) {
-        let hundredth = |v: &mut f64| *v = (*v * 100.0).round() / 100.0;
+    /// With places rounded to the precision of the files, a hundredth of a pixel and a thousandth of a panel, and all other
+    /// numbers to what text gives back exactly. None when a number is not finite.
+    pub(crate) fn rounded(mut self) -> Option<Self> {
         for panel in &mut self.manifest.panels {
             panel.quad_px.iter_mut().flatten().for_each(hundredth);
         }
@@ -100,10 +102,13 @@ impl Draft {
             instant.at_panel = (instant.at_panel * 1000.0).round() / 1000.0;
         }
         for panel in &mut self.annotation.panels {
-            panel.ground_px.iter_mut().flatten().flatten().for_each(hundredth);
-            panel.marks.iter_mut().flat_map(|mark| &mut mark.at_px).for_each(hundredth);
-            panel.keypoints.places_mut().flatten().for_each(hundredth);
+            if !round_panel(panel) {
+                return None;
+            }
         }
+        let panels = std::mem::take(&mut self.annotation.panels);
+        let annotation = Annotation { panels, ..with_short_numbers(&self.annotation)? };
+        Some(Self { manifest: with_short_numbers(&self.manifest)?, annotation })
     }
 
     /// The parts of `after` in which it differs from this.
@@ -112,7 +117,12 @@ impl Draft {
         if self.manifest != after.manifest {
             parts.push(Part::Manifest(Box::new(after.manifest.clone())));
         }
-        let head = |draft: &Self| Annotation { panels: Vec::new(), ..draft.annotation.clone() };
+        // How the plate is named follows from where the annotation is, and is no step.
+        let head = |draft: &Self| Annotation {
+            panels: Vec::new(),
+            plate: String::new(),
+            ..draft.annotation.clone()
+        };
         let (before_head, after_head) = (head(self), head(after));
         if before_head != after_head {
             parts.push(Part::Head(Box::new(after_head)));
@@ -133,12 +143,53 @@ impl Draft {
             match part {
                 Part::Manifest(manifest) => self.manifest = (**manifest).clone(),
                 Part::Head(head) => {
-                    let panels = std::mem::take(&mut self.annotation.panels);
-                    self.annotation = Annotation { panels, ..(**head).clone() };
+                    let Annotation { panels, plate, .. } = &mut self.annotation;
+                    let (panels, plate) = (std::mem::take(panels), std::mem::take(plate));
+                    self.annotation = Annotation { panels, plate, ..(**head).clone() };
                 }
                 Part::Panel(panel) => *self.panel_mut(panel.panel) = (**panel).clone(),
                 Part::NoPanel(number) => self.annotation.panels.retain(|panel| panel.panel != *number),
             }
         }
+    }
+}
+
+fn hundredth(value: &mut f64) {
+    *value = (*value * 100.0).round() / 100.0;
+}
+
+/// Rounds what is marked on a panel; whether all of it is finite.
+fn round_panel(panel: &mut PanelAnnotation) -> bool {
+    let mut finite = true;
+    let mut round = |value: &mut f64| {
+        hundredth(value);
+        finite &= value.is_finite();
+    };
+    panel.ground_px.iter_mut().flatten().flatten().for_each(&mut round);
+    for mark in &mut panel.marks {
+        round(&mut mark.mark);
+        mark.at_px.iter_mut().for_each(&mut round);
+    }
+    panel.keypoints.places_mut().flatten().for_each(&mut round);
+    finite
+}
+
+/// A document with its numbers to nine digits, which text gives back exactly, and more than anybody knows of a plate.
+/// None when one is not finite.
+fn with_short_numbers<T: Serialize + DeserializeOwned>(document: &T) -> Option<T> {
+    let mut value = serde_json::to_value(document).ok()?;
+    shorten(&mut value);
+    serde_json::from_value(value).ok()
+}
+
+fn shorten(value: &mut Value) {
+    match value {
+        Value::Array(items) => items.iter_mut().for_each(shorten),
+        Value::Object(fields) => fields.values_mut().for_each(shorten),
+        Value::Number(number) if number.is_f64() => {
+            let short = number.as_f64().and_then(|v| format!("{v:.8e}").parse().ok());
+            *number = short.and_then(Number::from_f64).unwrap_or_else(|| number.clone());
+        }
+        _ => {}
     }
 }

@@ -14,11 +14,14 @@ use sha2::{Digest, Sha256};
 use super::draft::Draft;
 use super::record::Record;
 use super::{OnDisk, place};
+use crate::files::sync_folder;
 
 /// Schema version of a journal.
 pub(crate) const JOURNAL_SCHEMA: u32 = 1;
 /// Ending of a journal's file name.
 const ENDING: &str = "journal";
+/// Ending of a journal that this version cannot read.
+const SET_ASIDE: &str = "journal-unreadable";
 /// Hexadecimal digits of a line's check.
 const CHECK_DIGITS: usize = 8;
 
@@ -37,6 +40,17 @@ pub(crate) struct Head {
 pub(crate) struct Recovered {
     pub(crate) head: Head,
     pub(crate) records: Vec<Record>,
+}
+
+impl Recovered {
+    /// Changes since the last save.
+    fn unsaved(&self) -> usize {
+        self.records.iter().rev().take_while(|record| !matches!(record, Record::Saved { .. })).count()
+    }
+
+    fn is_unsaved(&self) -> bool {
+        self.unsaved() > 0 || (self.records.is_empty() && self.head.draft != self.head.saved)
+    }
 }
 
 /// Why a journal cannot be used.
@@ -74,93 +88,132 @@ pub enum JournalError {
 #[derive(Debug)]
 pub(crate) struct Journal {
     path: PathBuf,
-    file: File,
+    /// None until it can be made.
+    file: Option<File>,
+    /// Bytes of the lines that are on disk.
+    length: u64,
+    /// Lines that are not on disk yet: they are written before the next one.
+    backlog: Vec<u8>,
+    fault: Option<String>,
 }
 
 impl Journal {
     /// Starts the journal of a document in a folder, which is made if need be. One that is there is replaced, unless
-    /// another program holds it or it has changes.
+    /// another program holds it or it has changes. Without room or leave to write it, the journal is begun with the next
+    /// line for which there is.
     pub(crate) fn create(folder: &Path, head: &Head) -> Result<Self, JournalError> {
         let path = folder.join(file_name(&head.annotation_path));
-        std::fs::create_dir_all(folder).map_err(|source| file_error(&path, source))?;
-        let mut journal = Self::lock(path)?;
-        if journal.waiting().is_some() {
-            return Err(JournalError::Unsaved { path: journal.path });
+        let backlog = line(head).map_err(|source| file_error(&path, source))?;
+        let mut journal = Self { path, file: None, length: 0, backlog, fault: None };
+        match journal.write() {
+            Err(error @ (JournalError::Held { .. } | JournalError::Unsaved { .. })) => Err(error),
+            written => {
+                journal.fault = written.err().map(|error| error.to_string());
+                Ok(journal)
+            }
         }
-        journal.restart(head)?;
-        Ok(journal)
     }
 
-    /// Opens a journal that was left behind, and cuts a torn last line off.
+    /// Opens a journal that was left behind; a torn last line is cut off with the next that is written.
     pub(crate) fn reopen(path: &Path) -> Result<(Self, Recovered), JournalError> {
-        let mut journal = Self::lock(path.to_path_buf())?;
-        let mut text = Vec::new();
-        journal.file.read_to_end(&mut text).map_err(|source| file_error(path, source))?;
+        let mut file = lock(path, false)?;
+        let text = read(&mut file, path)?;
         let (recovered, length) =
             parse(&text).ok_or_else(|| JournalError::Unreadable { path: path.to_path_buf() })?;
-        let cut = |file: &mut File| {
-            file.set_len(length as u64)?;
-            file.seek(SeekFrom::End(0)).map(drop)
-        };
-        cut(&mut journal.file).map_err(|source| file_error(path, source))?;
-        Ok((journal, recovered))
-    }
-
-    fn lock(path: PathBuf) -> Result<Self, JournalError> {
-        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-        let file = file.map_err(|source| file_error(&path, source))?;
-        match file.try_lock() {
-            Ok(()) => Ok(Self { path, file }),
-            Err(std::fs::TryLockError::WouldBlock) => Err(JournalError::Held { path }),
-            Err(std::fs::TryLockError::Error(source)) => Err(file_error(&path, source)),
-        }
-    }
-
-    /// Begins anew from a state.
-    pub(crate) fn restart(&mut self, head: &Head) -> Result<(), JournalError> {
-        let begin = |file: &mut File| {
-            file.set_len(0)?;
-            file.rewind()
-        };
-        begin(&mut self.file).map_err(|source| file_error(&self.path, source))?;
-        self.write(head)
+        let (path, length) = (path.to_path_buf(), length as u64);
+        Ok((Self { path, file: Some(file), length, backlog: Vec::new(), fault: None }, recovered))
     }
 
     /// Adds a line and waits until it is on disk.
-    pub(crate) fn append(&mut self, record: &Record) -> Result<(), JournalError> {
-        self.write(record)
+    pub(crate) fn append(&mut self, record: &Record) {
+        let appended = line(record).map_err(|source| file_error(&self.path, source)).and_then(|line| {
+            self.backlog.extend(line);
+            self.write()
+        });
+        self.fault = appended.err().map(|error| error.to_string());
     }
 
-    fn write<T: Serialize>(&mut self, line: &T) -> Result<(), JournalError> {
-        let json = serde_json::to_string(line)
-            .unwrap_or_else(|error| unreachable!("documents hold only string keys: {error}"));
-        let line = format!("{} {json}\n", check(json.as_bytes()));
-        let write = |file: &mut File| {
-            file.write_all(line.as_bytes())?;
-            file.sync_data()
+    /// Why lines are missing on disk, if any are.
+    pub(crate) fn fault(&self) -> Option<&str> {
+        self.fault.as_deref()
+    }
+
+    fn write(&mut self) -> Result<(), JournalError> {
+        let mut file = match self.file.take() {
+            Some(file) => file,
+            None => make(&self.path)?,
         };
-        write(&mut self.file).map_err(|source| file_error(&self.path, source))
-    }
-
-    /// The changes in it, if any.
-    fn waiting(&mut self) -> Option<Waiting> {
-        let mut text = Vec::new();
-        self.file.read_to_end(&mut text).ok()?;
-        let Recovered { head, records } = parse(&text)?.0;
-        let unsaved = records.iter().rev().take_while(|r| !matches!(r, Record::Saved { .. })).count();
-        let changed = unsaved > 0 || (records.is_empty() && head.draft != head.saved);
-        changed.then(|| Waiting {
-            journal_path: self.path.clone(),
-            annotation_path: head.annotation_path,
-            plate: head.draft.manifest.id,
-            changes: unsaved,
-        })
+        let written = write_from(&mut file, self.length, &self.backlog);
+        self.file = Some(file);
+        written.map_err(|source| file_error(&self.path, source))?;
+        self.length += self.backlog.len() as u64;
+        self.backlog.clear();
+        Ok(())
     }
 
     /// Removes the file: its document was saved, or was not to be kept. A file that cannot be removed is left.
     pub(crate) fn remove(self) {
-        std::fs::remove_file(&self.path).ok();
+        if self.file.is_some() {
+            std::fs::remove_file(&self.path).ok();
+        }
     }
+}
+
+/// Makes the file of a new journal, or takes over one that is not needed. One that this version cannot read is kept
+/// beside it.
+fn make(path: &Path) -> Result<File, JournalError> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|source| file_error(path, source))?;
+    }
+    let mut file = lock(path, true)?;
+    let text = read(&mut file, path)?;
+    match parse(&text) {
+        Some((recovered, _)) if recovered.is_unsaved() => {
+            Err(JournalError::Unsaved { path: path.to_path_buf() })
+        }
+        // Without a whole first line it was never begun.
+        None if text.contains(&b'\n') => {
+            let aside = path.with_extension(SET_ASIDE);
+            std::fs::rename(path, aside).map_err(|source| file_error(path, source))?;
+            lock(path, true)
+        }
+        _ => Ok(file),
+    }
+    .inspect(|_| path.parent().into_iter().for_each(sync_folder))
+}
+
+/// Writes at the end of the good lines, over what an earlier attempt may have left there, and waits for the disk.
+fn write_from(file: &mut File, length: u64, lines: &[u8]) -> std::io::Result<()> {
+    file.set_len(length)?;
+    file.seek(SeekFrom::Start(length))?;
+    file.write_all(lines)?;
+    file.sync_data()
+}
+
+fn lock(path: &Path, create: bool) -> Result<File, JournalError> {
+    // Anything but a file could keep its reader waiting for ever.
+    if std::fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+        return Err(file_error(path, std::io::Error::other("not a file")));
+    }
+    let file = OpenOptions::new().read(true).write(true).create(create).truncate(false).open(path);
+    let file = file.map_err(|source| file_error(path, source))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(std::fs::TryLockError::WouldBlock) => Err(JournalError::Held { path: path.to_path_buf() }),
+        Err(std::fs::TryLockError::Error(source)) => Err(file_error(path, source)),
+    }
+}
+
+fn read(file: &mut File, path: &Path) -> Result<Vec<u8>, JournalError> {
+    let mut text = Vec::new();
+    file.read_to_end(&mut text).map_err(|source| file_error(path, source))?;
+    Ok(text)
+}
+
+/// A line's text; an error for a path that is no Unicode.
+fn line<T: Serialize>(content: &T) -> std::io::Result<Vec<u8>> {
+    let json = serde_json::to_string(content)?;
+    Ok(format!("{} {json}\n", check(json.as_bytes())).into_bytes())
 }
 
 fn file_error(path: &Path, source: std::io::Error) -> JournalError {
@@ -225,7 +278,14 @@ pub fn waiting(folder: &Path) -> Vec<Waiting> {
 }
 
 fn left_behind(journal_path: PathBuf) -> Option<Waiting> {
-    Journal::lock(journal_path).ok()?.waiting()
+    let mut file = lock(&journal_path, false).ok()?;
+    let (recovered, _) = parse(&read(&mut file, &journal_path).ok()?)?;
+    recovered.is_unsaved().then(|| Waiting {
+        changes: recovered.unsaved(),
+        annotation_path: recovered.head.annotation_path,
+        plate: recovered.head.draft.manifest.id,
+        journal_path,
+    })
 }
 
 /// Removes a journal: the person does not want what is in it.
@@ -233,6 +293,6 @@ fn left_behind(journal_path: PathBuf) -> Option<Waiting> {
 /// # Errors
 /// When it cannot be removed, or another program holds it.
 pub fn discard(journal_path: &Path) -> Result<(), JournalError> {
-    let journal = Journal::lock(journal_path.to_path_buf())?;
-    std::fs::remove_file(&journal.path).map_err(|source| file_error(journal_path, source))
+    let _lock = lock(journal_path, false)?;
+    std::fs::remove_file(journal_path).map_err(|source| file_error(journal_path, source))
 }

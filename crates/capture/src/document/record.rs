@@ -17,6 +17,6 @@ pub(crate) enum Record {
     Undo,
     /// The step last taken back was brought again.
     Redo,
-    /// Both files were written.
-    Saved { on_disk: OnDisk, annotation_path: PathBuf },
+    /// Both files were written; where the annotation is now, and how it names its plate.
+    Saved { on_disk: OnDisk, annotation_path: PathBuf, plate: String },
 }

@@ -123,7 +123,8 @@ fn saving_asks_before_it_overwrites_another_change() {
 #[test]
 fn a_plate_without_annotation_begins_one() {
     let folder = tempfile::tempdir().unwrap();
-    let manifest_path = specimen(folder.path()).parent().unwrap().parent().unwrap().join("specimen-walk.json");
+    let manifest_path =
+        specimen(folder.path()).parent().unwrap().parent().unwrap().join("specimen-walk.json");
     let manifest = Manifest::read(&manifest_path).unwrap();
     let path = annotation_beside(&manifest_path);
     assert_eq!(path, folder.path().join("annotations/specimen-walk.json"));

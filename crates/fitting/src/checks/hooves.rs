@@ -12,7 +12,7 @@ use crate::held_out::quantile;
 /// for the air, because the line has its own error.
 const OFF_GROUND: f64 = 0.03;
 /// ... and never less than this many standard deviations of the hand that placed it.
-const HAND_SIGMAS: f64 = 3.0;
+const HAND_SIGMAS: f64 = 3.5;
 /// A toe within this of the ground may stand, withers heights: the scatter of a placed toe.
 const ON_GROUND: f64 = 0.012;
 /// A toe that moves less than this from panel to panel lies still, withers heights.

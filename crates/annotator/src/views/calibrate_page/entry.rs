@@ -75,7 +75,7 @@ fn checked(draft: &Draft, number: Number, unit: Unit, text: &str) -> Result<f64,
 /// A field for a number; nothing where the documents have no place for it.
 pub(super) fn number(ui: &mut Ui, session: &mut Session, number: Number, width: f32) {
     let Some(value) = number.get(session.document.draft()) else { return };
-    let (unit, id) = (session.calibrate.unit(number), Id::new(("calibration", number)));
+    let (unit, id) = (session.calibrate.unit(number), Id::unique(("calibration", number)));
     let typing = session.calibrate.typing.take_if(|typing| typing.number == number);
     let is_typed = typing.is_some();
     let (mut text, mut refused) = match typing {
@@ -146,7 +146,7 @@ pub(super) fn origin(ui: &mut Ui, session: &mut Session, quantity: Quantity) {
     let known = session.draft().manifest.calibration.as_ref().and_then(|c| quantity.of(c));
     let Some(mut text) = known.map(|known| known.from.clone()) else { return };
     let label = format!("{}, where from", quantity.name());
-    let id = Id::new(("origin", quantity));
+    let id = Id::unique(("origin", quantity));
     let edit = TextEdit::multiline(&mut text).id(id).desired_rows(1).desired_width(f32::INFINITY);
     let response = ui.add(edit.return_key(None).hint_text("printed where, or assumed why"));
     response.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &label));

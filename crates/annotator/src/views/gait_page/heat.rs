@@ -23,8 +23,11 @@ const GROUPS: [(usize, &str); 5] =
     [(0, "trunk"), (6, "near fore"), (11, "off fore"), (16, "near hind"), (21, "off hind")];
 /// Distances from here on are all the same colour, share of the withers height: 4 %, 6 cm of a horse.
 const HOTTEST: f64 = 0.04;
-/// The colours from no distance to the hottest: dark blue, purple, red, yellow; their lightness rises evenly.
-const HEAT: [[u8; 3]; 4] = [[30, 32, 78], [122, 40, 120], [222, 82, 70], [250, 226, 110]];
+/// The colours from no distance to the hottest, on dark background and on light: few distances stand out from it.
+const HEAT: [[[u8; 3]; 4]; 2] = [
+    [[30, 32, 78], [122, 40, 120], [222, 82, 70], [250, 226, 110]],
+    [[226, 228, 238], [250, 196, 130], [222, 82, 60], [96, 10, 60]],
+];
 
 /// Where rows and columns are.
 struct Squares {
@@ -100,7 +103,7 @@ fn draw(ui: &Ui, squares: &Squares, plate: &PlateFit, session: &Session) {
     for residual in &plate.residuals {
         if let Ok(column) = squares.panels.binary_search(&residual.panel) {
             let share = residual.metres() / (HOTTEST * plate.withers_height_m);
-            mesh.add_colored_rect(squares.rect(column, residual.keypoint.index()), heat(share));
+            mesh.add_colored_rect(squares.rect(column, residual.keypoint.index()), heat(ui, share));
         }
     }
     painter.add(egui::Shape::mesh(mesh));
@@ -118,11 +121,12 @@ fn draw(ui: &Ui, squares: &Squares, plate: &PlateFit, session: &Session) {
 }
 
 /// The colour of a share of the hottest.
-fn heat(share: f64) -> Color32 {
-    let at = share.clamp(0.0, 1.0) * (HEAT.len() - 1) as f64;
-    let from = (at as usize).min(HEAT.len() - 2);
+fn heat(ui: &Ui, share: f64) -> Color32 {
+    let colors = HEAT[usize::from(!ui.visuals().dark_mode)];
+    let at = share.clamp(0.0, 1.0) * (colors.len() - 1) as f64;
+    let from = (at as usize).min(colors.len() - 2);
     let mix = |i: usize| {
-        let [a, b] = [HEAT[from][i], HEAT[from + 1][i]].map(f64::from);
+        let [a, b] = [colors[from][i], colors[from + 1][i]].map(f64::from);
         (a + (b - a) * (at - from as f64)).round() as u8
     };
     Color32::from_rgb(mix(0), mix(1), mix(2))
@@ -139,7 +143,7 @@ fn scale(ui: &mut Ui, withers_height_m: f64) {
             let left = rect.left() + rect.width() * i as f32 / steps as f32;
             let step =
                 Rect::from_min_size(pos2(left, rect.top()), vec2(rect.width() / steps as f32, rect.height()));
-            mesh.add_colored_rect(step, heat((f64::from(i) + 0.5) / f64::from(steps)));
+            mesh.add_colored_rect(step, heat(ui, (f64::from(i) + 0.5) / f64::from(steps)));
         }
         ui.painter().add(egui::Shape::mesh(mesh));
         ui.weak(format!("{:.0} cm and more", 100.0 * HOTTEST * withers_height_m));

@@ -112,7 +112,7 @@ fn draw_curve(ui: &Ui, plot: &Plot, law: &ContactLaw, [low, high]: [f64; 2], usu
 fn distances(ui: &mut Ui, live: Option<&LiveGait>, laws: &[&ContactLaw], points: [&[Measured]; 2]) {
     let [now, fitted] = points;
     Grid::new("distances from laws").num_columns(4).striped(true).spacing([10.0, 2.0]).show(ui, |ui| {
-        ["", "law (s)", "bar", "fit"].into_iter().for_each(|title| drop(ui.weak(title)));
+        ["", "law (s)", "bar (s)", "fit (s)"].into_iter().for_each(|title| drop(ui.weak(title)));
         ui.end_row();
         for kind in LawKind::ALL {
             let law = laws.iter().find(|law| law.law == kind);

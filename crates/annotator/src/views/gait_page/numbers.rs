@@ -1,8 +1,8 @@
 //! The gait in numbers: from the footfall bar as it is now, and from the fit.
 
 use egui::{Grid, RichText, Ui};
-use muybridge_capture::{Facing, Manifest};
-use muybridge_core::{Lead, MPS_PER_MPH, Pair, Side};
+use muybridge_capture::Facing;
+use muybridge_core::{Gait, MPS_PER_MPH, Pair, Side};
 use muybridge_fitting::contacts::LegContact;
 use muybridge_fitting::footfalls::{LANES, LiveGait, Missing};
 use muybridge_fitting::gait_analysis::GaitAnalysis;
@@ -23,19 +23,17 @@ struct Column {
 }
 
 /// Names of the rows before the duty factors.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 10] = [
     "Contact, fore (s)",
     "Contact, hind (s)",
     "Support (s)",
     "Stride time (s)",
     "Stride length (m)",
-    "Closes after (panels)",
+    "Closes after panels",
     "Speed (m/s)",
     "Speed (km/h)",
     "Speed (mph)",
     "Froude number",
-    "Footfalls imply",
-    "Lead",
 ];
 /// Names of the duty factors, in the order of the lanes.
 const DUTY: [&str; 4] = ["Duty, near fore", "Duty, off fore", "Duty, near hind", "Duty, off hind"];
@@ -49,7 +47,8 @@ pub(super) fn show(ui: &mut Ui, session: &Session, fit: Option<&PlateFit>) {
     let fitted = fit.map(|fit| of_fit(fit));
     if now.is_some() || fitted.is_some() {
         table(ui, now.as_ref(), fitted.as_ref());
-        against_title(ui, live.ok().map(|live| &live.analysis), manifest);
+        let analyses = [live.ok().map(|live| &live.analysis), fit.map(|fit| &fit.analysis)];
+        against_title(ui, analyses, manifest.gait);
     }
     let missing: &[Missing] = live.map_or_else(|missing| missing, |live| &live.missing);
     for missing in missing {
@@ -58,7 +57,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, fit: Option<&PlateFit>) {
 }
 
 fn table(ui: &mut Ui, now: Option<&Column>, fitted: Option<&Column>) {
-    Grid::new("gait in numbers").num_columns(3).striped(true).spacing([10.0, 2.0]).show(ui, |ui| {
+    Grid::new("gait in numbers").num_columns(3).striped(true).spacing([8.0, 2.0]).show(ui, |ui| {
         ui.weak("");
         ui.weak("Footfall bar").on_hover_text("From labels and edges of the footfall bar as it is now");
         ui.weak(if fitted.is_some() { "Fit" } else { "" })
@@ -98,8 +97,6 @@ fn of_footfalls(live: &LiveGait, facing: Facing) -> Column {
         km_h,
         mph,
         live.froude.map(|froude| format!("{froude:.2}")),
-        Some(live.analysis.implied.name().into()),
-        Some(lead_in_words(live.analysis.lead)),
     ];
     Column { values, duty: duty(&live.analysis, facing) }
 }
@@ -121,8 +118,6 @@ fn of_fit(fit: &PlateFit) -> Column {
         km_h,
         mph,
         Some(format!("{:.2}", fit.froude())),
-        Some(analysis.implied.name().into()),
-        Some(lead_in_words(analysis.lead)),
     ];
     Column { values, duty: duty(analysis, fit.plate.facing) }
 }
@@ -139,23 +134,28 @@ fn duty(analysis: &GaitAnalysis, facing: Facing) -> [Option<String>; 4] {
     })
 }
 
-fn lead_in_words(lead: Option<Lead>) -> String {
+/// `transverse gallop, lead right`.
+fn in_words(analysis: &GaitAnalysis) -> String {
     let name = |side: Side| if side == Side::Left { "left" } else { "right" };
-    match lead {
-        None => "none".into(),
-        Some(lead) if lead.is_transverse() => name(lead.fore).into(),
-        Some(lead) => format!("{} fore, {} hind", name(lead.fore), name(lead.hind)),
+    let implied = analysis.implied.name();
+    match analysis.lead {
+        None => implied.into(),
+        Some(lead) if lead.is_transverse() => format!("{implied}, lead {}", name(lead.fore)),
+        Some(lead) => format!("{implied}, lead {} fore, {} hind", name(lead.fore), name(lead.hind)),
     }
 }
 
-/// Whether the footfalls agree with the title.
-fn against_title(ui: &mut Ui, analysis: Option<&GaitAnalysis>, manifest: &Manifest) {
-    let Some(analysis) = analysis else { return };
-    let gait = manifest.gait;
-    if analysis.implied.agrees_with(gait) {
-        ui.weak(format!("The title says {gait}: the footfalls agree."));
+/// What gait the footfalls of the bar and of the fit imply, and whether that is the title's.
+fn against_title(ui: &mut Ui, [now, fitted]: [Option<&GaitAnalysis>; 2], title: Gait) {
+    let Some(analysis) = now.or(fitted) else { return };
+    ui.label(format!("The footfalls imply: {}.", in_words(analysis)));
+    if let Some(fitted) = fitted.filter(|fitted| in_words(fitted) != in_words(analysis)) {
+        ui.label(format!("Those of the fit imply: {}.", in_words(fitted)));
+    }
+    if analysis.implied.agrees_with(title) {
+        ui.weak(format!("The title says {title}: they agree."));
     } else {
-        let text = format!("The title says {gait}, the footfalls do not: {}.", analysis.implied.name());
+        let text = format!("The title says {title}: they do not agree.");
         ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
     }
 }

@@ -103,10 +103,10 @@ impl Plot {
     /// A point with its standard deviations: filled, or a ring for the fit's.
     pub(super) fn point(&self, at: [f64; 2], sd: [f64; 2], color: Color32, is_fit: bool) {
         let stroke = Stroke::new(if is_fit { 1.0 } else { 1.5 }, color);
-        let bar =
-            |a: [f64; 2], b: [f64; 2]| drop(self.painter.line_segment([self.at(a), self.at(b)], stroke));
-        bar([at[0] - sd[0], at[1]], [at[0] + sd[0], at[1]]);
-        bar([at[0], at[1] - sd[1]], [at[0], at[1] + sd[1]]);
+        for by in [[sd[0], 0.0], [0.0, sd[1]]] {
+            let ends = [-1.0, 1.0].map(|sign| self.at([at[0] + sign * by[0], at[1] + sign * by[1]]));
+            self.painter.line_segment(ends, stroke);
+        }
         if is_fit {
             self.painter.circle_stroke(self.at(at), 6.0, Stroke::new(1.8, color));
         } else {

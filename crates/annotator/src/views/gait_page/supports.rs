@@ -1,7 +1,7 @@
 //! Which feet are down, one little diagram after the other through the stride.
 
 use egui::accesskit::Role;
-use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use muybridge_capture::{Facing, NearOff};
 use muybridge_core::{Limb, Pair};
 use muybridge_fitting::gait_analysis::Support;
@@ -43,6 +43,8 @@ fn diagram(ui: &mut Ui, support: &Support, facing: Facing) {
     let none = support.down == [false; 4];
     let visuals = ui.visuals();
     painter.rect_filled(frame, 4.0, if none { visuals.faint_bg_color } else { visuals.extreme_bg_color });
+    let edge = Stroke::new(1.0, visuals.weak_text_color().gamma_multiply(0.3));
+    painter.rect_stroke(frame, 4.0, edge, StrokeKind::Inside);
     for limb in Limb::ALL {
         let color = legible(ui, colors::side(facing.near_off(limb.side())));
         let at = place(limb, facing, frame.center());

@@ -113,3 +113,36 @@ impl<'a> Motion<'a> {
         Some(bones.into_iter().enumerate().map(|(i, place)| DrawnBone { place, stands: stands(i) }).collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use muybridge_capture::{Keypoint, NearOff, Plate};
+    use muybridge_core::Pair;
+    use muybridge_fitting::pipeline::fit_loaded;
+    use muybridge_fitting::weights::Weights;
+
+    use super::*;
+
+    #[test]
+    fn the_stride_lies_on_every_photograph_and_moves_evenly_between_them() {
+        let specimens = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../plates/specimens/annotations");
+        let skeleton = Skeleton::reference();
+        let plate = Plate::load(&specimens.join("specimen-gallop.json")).unwrap();
+        let plate = fit_loaded(plate, &skeleton, &Weights::default()).unwrap();
+        let motion = Motion::new(&plate, &skeleton);
+        let hoof = motion.facing().limb(NearOff::Near, Pair::Hind).hoof_bone();
+        let tip = |panel: u32, phase: f64| motion.bones_px(panel, phase).unwrap()[hoof].place.ends_px[1];
+        let apart = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+        for panel in 1..=12 {
+            let phase = motion.phase_of(panel).unwrap();
+            assert_eq!(motion.panel_near(phase), Some(panel));
+            let placed = plate.plate.annotation.panels.iter().find(|p| p.panel == panel).unwrap();
+            let placed = placed.keypoints.place(Keypoint::hoof(NearOff::Near, Pair::Hind)).unwrap();
+            assert!(apart(tip(panel, phase), placed) < 3.0, "panel {panel}");
+            assert!(apart(tip(panel, phase), tip(panel, phase + 1e-3)) < 3.0, "panel {panel} jumps");
+        }
+        assert!(motion.bones_px(99, 0.0).is_none());
+    }
+}

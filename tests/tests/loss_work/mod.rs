@@ -1,0 +1,1 @@
+//! Random work on a plate, the same for the same seed.
