@@ -109,7 +109,9 @@ fn run_and_kill(seed: u64, folder: &Path) -> Said {
     child.wait().unwrap();
     // A line without its end was being written.
     let rest = String::from_utf8(rest).unwrap();
-    rest.split_inclusive('\n').filter(|line| line.ends_with('\n')).for_each(|line| said.take(line.trim_end()));
+    rest.split_inclusive('\n')
+        .filter(|line| line.ends_with('\n'))
+        .for_each(|line| said.take(line.trim_end()));
     said
 }
 

@@ -9,6 +9,7 @@ mod pose_commands;
 mod second_pass_commands;
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use egui::{CentralPanel, Context, Panel, Ui};
 
@@ -55,7 +56,7 @@ pub struct Annotator {
     tour: Option<Tour>,
     dialog: Option<Dialog>,
     opening: Option<Job<Result<Opened, String>>>,
-    picking: Option<Job<Option<PathBuf>>>,
+    picking: Option<Job<(Option<PathBuf>, Duration)>>,
     may_close: bool,
 }
 
@@ -108,7 +109,10 @@ impl Annotator {
         if !self.is_asking() {
             self.take_keys(&context, &mut commands);
         }
-        Panel::top("menu bar").show(ui, |ui| self.menu_bar(ui, &mut commands));
+        let menu_bar = Panel::top("menu bar").show(ui, |ui| self.menu_bar(ui, &mut commands));
+        if let Some(path) = menu_bar.inner {
+            self.leave(&context, After::Open(path));
+        }
         if let Some(session) = &mut self.session {
             let Self { settings, messages, .. } = self;
             session.before_frame(&context, settings.fit_always);
@@ -192,8 +196,8 @@ impl Annotator {
             Some(Ok(Err(trouble)) | Err(trouble)) => self.messages.trouble(trouble),
             None => {}
         }
-        if let Some(Ok(Some(path))) = take_answer(&mut self.picking) {
-            self.leave(context, After::Open(path));
+        if let Some(Ok(picked)) = take_answer(&mut self.picking) {
+            self.take_picked(context, picked);
         }
         if let Some(session) = &mut self.session {
             session.finish_background_work(&mut self.messages);

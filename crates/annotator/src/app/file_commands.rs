@@ -1,6 +1,7 @@
 //! Commands that open, save and close.
 
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use egui::{Context, ViewportCommand};
 use muybridge_capture::SaveError;
@@ -10,15 +11,27 @@ use super::{Annotator, Browser};
 use crate::job::Job;
 use crate::specimen;
 
+/// A dialog that is gone after this was never there.
+const NO_DIALOG: Duration = Duration::from_millis(300);
+
 impl Annotator {
     pub(super) fn pick_file(&mut self, context: &Context) {
-        // Where the system has no dialog it gives nothing, at once; then the list of plates is there.
         self.picking = Some(Job::start("Choosing a file", context, || {
-            rfd::FileDialog::new()
-                .add_filter("Annotations, plates, pictures", &["json", "jpg", "jpeg", "png", "tif", "tiff", "gif"])
-                .pick_file()
+            let asked = Instant::now();
+            let endings = ["json", "jpg", "jpeg", "png", "tif", "tiff", "gif"];
+            let dialog = rfd::FileDialog::new().add_filter("Annotations, plates, pictures", &endings);
+            (dialog.pick_file(), asked.elapsed())
         }));
-        self.browse();
+    }
+
+    /// What was chosen in the file dialog; the list of plates where the system has no dialog, which then gives nothing,
+    /// faster than anybody could.
+    pub(super) fn take_picked(&mut self, context: &Context, (path, took): (Option<PathBuf>, Duration)) {
+        match path {
+            Some(path) => self.leave(context, After::Open(path)),
+            None if took < NO_DIALOG => self.browse(),
+            None => {}
+        }
     }
 
     pub(super) fn browse(&mut self) {

@@ -1,5 +1,7 @@
 //! The menu bar: every command with its key, and what is under way.
 
+use std::path::PathBuf;
+
 use egui::{Button, RichText, Ui};
 
 use super::{Annotator, Command};
@@ -7,13 +9,35 @@ use crate::command::Menu;
 use crate::toast::trouble_color;
 
 impl Annotator {
-    pub(super) fn menu_bar(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+    /// The bar; a recent plate that was chosen.
+    pub(super) fn menu_bar(&self, ui: &mut Ui, commands: &mut Vec<Command>) -> Option<PathBuf> {
+        let mut chosen = None;
         egui::MenuBar::new().ui(ui, |ui| {
             for (menu, title) in Menu::ALL {
-                ui.menu_button(title, |ui| self.menu(ui, menu, commands));
+                ui.menu_button(title, |ui| {
+                    self.menu(ui, menu, commands);
+                    if menu == Menu::File && !self.settings.recent.is_empty() {
+                        ui.separator();
+                        chosen = self.recent(ui);
+                    }
+                });
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| self.status(ui));
         });
+        chosen
+    }
+
+    fn recent(&self, ui: &mut Ui) -> Option<PathBuf> {
+        let mut chosen = None;
+        for path in &self.settings.recent {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let button = Button::new(format!("Recent: {name}"));
+            if ui.add(button).on_hover_text(path.display().to_string()).clicked() {
+                chosen = Some(path.clone());
+                ui.close();
+            }
+        }
+        chosen
     }
 
     fn menu(&self, ui: &mut Ui, menu: Menu, commands: &mut Vec<Command>) {

@@ -25,7 +25,7 @@ pub fn inspector(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>)
     section(ui, "fit", "Fit", |ui| fit_box::show(ui, session, page));
     concerns::show(ui, session, fitted.as_deref());
     section(ui, "numbers", "Gait in numbers", |ui| numbers::show(ui, session, plate));
-    section(ui, "supports", "Feet on the ground, in order", |ui| supports::show(ui, session));
+    section(ui, "supports", "Feet on the ground, in order", |ui| supports::show(ui, session, plate));
     section(ui, "law", "Contact time against speed", |ui| law_plot::show(ui, session, plate));
     section(ui, "hildebrand", "Hildebrand's plot", |ui| hildebrand::show(ui, session, plate));
     if let Some(plate) = plate {

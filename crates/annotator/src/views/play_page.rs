@@ -5,7 +5,7 @@ mod motion;
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Slider, Stroke, Ui, vec2};
+use egui::{Color32, FontId, Painter, Pos2, Rect, Slider, Stroke, Ui, vec2};
 use muybridge_capture::NearOff;
 use muybridge_core::Limb;
 use muybridge_fitting::layout::ROOT_X;
@@ -235,9 +235,4 @@ fn figure(ui: &mut Ui, session: &mut Session, motion: &Motion<'_>) {
     let width = ui.available_width();
     session.figure.ui(ui, vec2(width, FIGURE_ASPECT * width), &poses, &figure_colors());
     ui.checkbox(&mut session.play.ghosts, "A twelfth of a stride before and after");
-}
-
-/// A name at the left of a lane.
-fn lane_name(painter: &Painter, at: Pos2, name: &str, color: Color32) {
-    painter.text(at, Align2::RIGHT_CENTER, name, FontId::proportional(12.0), color);
 }

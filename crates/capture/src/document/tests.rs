@@ -136,3 +136,107 @@ fn a_plate_without_annotation_begins_one() {
     document.save(false).unwrap();
     assert_eq!(Document::open(&new, None).unwrap().draft(), document.draft());
 }
+
+#[test]
+fn an_annotation_elsewhere_finds_its_plate_whatever_is_undone() {
+    let folder = tempfile::tempdir().unwrap();
+    let annotation = specimen(folder.path());
+    let journals = folder.path().join("journals");
+    let mut document = Document::open(&annotation, Some(&journals)).unwrap();
+    set_poll(&mut document, 1, 100.0);
+    let elsewhere = folder.path().join("annotations/deep/second.json");
+    document.save_as(&elsewhere, false).unwrap();
+    while document.undo().is_some() {}
+    document.save(false).unwrap();
+    assert_eq!(Document::open(&elsewhere, None).unwrap().draft(), document.draft());
+    set_poll(&mut document, 1, 90.0);
+    drop(document);
+    let mut left = Document::recover(&waiting(&journals)[0].journal_path).unwrap();
+    assert_eq!(left.annotation_path(), elsewhere);
+    left.undo();
+    left.save(false).unwrap();
+    assert_eq!(Document::open(&elsewhere, None).unwrap().draft(), left.draft());
+}
+
+#[test]
+fn a_failed_save_under_another_name_leaves_everything_where_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let annotation = specimen(folder.path());
+    let mut document = Document::open(&annotation, None).unwrap();
+    set_poll(&mut document, 1, 100.0);
+    crate::write_atomically(&folder.path().join("a-file"), b"no folder").unwrap();
+    let before = document.draft().clone();
+    assert!(matches!(document.save_as(&folder.path().join("a-file/x.json"), false), Err(SaveError::File(_))));
+    let manifest_path = folder.path().join("annotations/../specimen-walk.json");
+    assert!(matches!(document.save_as(&manifest_path, true), Err(SaveError::OwnPlate { .. })));
+    assert_eq!((document.draft(), document.annotation_path()), (&before, annotation.as_path()));
+    document.save(false).unwrap();
+    assert_eq!(Document::open(&annotation, None).unwrap().draft(), &before);
+}
+
+#[test]
+fn nothing_is_written_that_could_not_be_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (annotation, journals) = (specimen(folder.path()), folder.path().join("journals"));
+    let mut document = Document::open(&annotation, Some(&journals)).unwrap();
+    assert!(!set_poll(&mut document, 1, f64::NAN));
+    assert!(!document.edit("Camera", |draft| {
+        draft.manifest.calibration.as_mut().unwrap().camera.distance_m.value = f64::INFINITY;
+    }));
+    assert!(!document.is_changed());
+    // A digit more than a reader of numbers keeps.
+    document.edit("Camera", |draft| {
+        draft.manifest.calibration.as_mut().unwrap().camera.distance_m.value = 10.0 + 0.1 + 0.2;
+    });
+    document.edit("Corners crossed", |draft| draft.manifest.panels[0].quad_px.swap(0, 1));
+    assert!(matches!(document.save(false), Err(SaveError::Wrong(_))));
+    let now = document.draft().clone();
+    drop(document);
+    let mut left = Document::recover(&waiting(&journals)[0].journal_path).unwrap();
+    assert_eq!(left.draft(), &now);
+    left.undo();
+    left.save(false).unwrap();
+}
+
+#[test]
+fn somebody_elses_change_of_the_manifest_is_not_taken_for_our_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let annotation = specimen(folder.path());
+    let mut document = Document::open(&annotation, None).unwrap();
+    set_poll(&mut document, 1, 100.0);
+    let manifest_path = document.manifest_path().to_path_buf();
+    let text = std::fs::read_to_string(&manifest_path).unwrap();
+    crate::write_atomically(&manifest_path, text.replace("none: a drawing", "changed").as_bytes()).unwrap();
+    document.save(false).unwrap();
+    document.edit("Title", |draft| draft.manifest.title = "x".into());
+    assert!(matches!(document.save(false), Err(SaveError::ChangedOnDisk { .. })));
+}
+
+#[test]
+fn a_save_cut_short_is_not_somebody_elses_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let (annotation, journals) = (specimen(folder.path()), folder.path().join("journals"));
+    let mut document = Document::open(&annotation, Some(&journals)).unwrap();
+    document.edit("Title", |draft| draft.manifest.title = "x".into());
+    // Killed after the manifest was written.
+    crate::write_json(document.manifest_path(), &document.draft().manifest).unwrap();
+    drop(document);
+    let mut left = Document::recover(&waiting(&journals)[0].journal_path).unwrap();
+    left.save(false).unwrap();
+}
+
+#[test]
+fn a_journal_of_another_version_is_kept_aside() {
+    let folder = tempfile::tempdir().unwrap();
+    let (annotation, journals) = (specimen(folder.path()), folder.path().join("journals"));
+    let mut document = Document::open(&annotation, Some(&journals)).unwrap();
+    set_poll(&mut document, 1, 100.0);
+    drop(document);
+    let path = waiting(&journals)[0].journal_path.clone();
+    let text = std::fs::read_to_string(&path).unwrap().replacen("\"journal\":1", "\"journal\":2", 1);
+    crate::write_atomically(&path, text.as_bytes()).unwrap();
+    Document::open(&annotation, Some(&journals)).unwrap().close();
+    assert_eq!(std::fs::read_to_string(path.with_extension("journal-unreadable")).unwrap(), text);
+    let missing = journals.join("missing.journal");
+    assert!(Document::recover(&missing).is_err() && discard(&missing).is_err() && !missing.exists());
+}

@@ -10,12 +10,12 @@ use clap::{Args, ValueEnum};
 use image::GrayImage;
 use muybridge_capture::exchange::{
     ExchangeError, Existing, ExportOptions, ExportPicture, Format, ImportFile, LARGEST_FILE_BYTES, Merged,
-    PanelPictures, PictureSource, Space, export, import,
+    PictureSource, Space, export, import,
 };
 use muybridge_capture::{
     Document, Manifest, hash_file, locate_image, relative_path, write_atomically, write_json,
 };
-use muybridge_imaging::{LoadLimits, PanelTransform, PanelView, load_gray};
+use muybridge_imaging::{Cutouts, LoadLimits, PanelView, load_gray};
 
 /// Folder of manifests when only a plate's identifier is given.
 const PLATES: &str = "plates";
@@ -99,37 +99,6 @@ pub(super) struct ImportArguments {
     /// Imported points replace those that are there, and an existing file is written over.
     #[arg(long)]
     replace: bool,
-}
-
-/// The panels' cut-outs, as `PanelView` makes them at full size.
-struct Cutouts(BTreeMap<u32, ([u32; 2], PanelTransform)>);
-
-impl Cutouts {
-    fn new(manifest: &Manifest) -> Self {
-        let cutout = |quad_px: [[f64; 2]; 4]| {
-            let side =
-                |a: usize, b: usize| (quad_px[a][0] - quad_px[b][0]).hypot(quad_px[a][1] - quad_px[b][1]);
-            let size = [0.5 * (side(0, 1) + side(3, 2)), 0.5 * (side(0, 3) + side(1, 2))];
-            let size = size.map(|v| v.round().max(1.0));
-            Some((size.map(|v| v as u32), PanelTransform::new(quad_px, size)?))
-        };
-        let panels = manifest.panels.iter();
-        Self(panels.filter_map(|panel| Some((panel.panel, cutout(panel.quad_px)?))).collect())
-    }
-}
-
-impl PanelPictures for Cutouts {
-    fn size_px(&self, panel: u32) -> Option<[u32; 2]> {
-        self.0.get(&panel).map(|(size, _)| *size)
-    }
-
-    fn plate_from_panel(&self, panel: u32, point_in_panel_px: [f64; 2]) -> Option<[f64; 2]> {
-        self.0.get(&panel).map(|(_, transform)| transform.plate_from_panel(point_in_panel_px))
-    }
-
-    fn panel_from_plate(&self, panel: u32, point_in_plate_px: [f64; 2]) -> Option<[f64; 2]> {
-        self.0.get(&panel).map(|(_, transform)| transform.panel_from_plate(point_in_plate_px))
-    }
 }
 
 /// Writes an annotation as files of another tool.

@@ -100,6 +100,7 @@ fn buttons(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     let count = session.panel_annotation().map_or(0, |panel| panel.marks.len());
     let none = (count == 0).then_some("This panel has no marks");
     let few = (count < 2).then_some("This panel needs two marks");
+    let mut counted = None;
     let mut edit = |session: &mut Session, label: &str, change: &mut dyn FnMut(&mut Draft)| {
         entry::attempt(session, page.messages, label, change);
     };
@@ -115,17 +116,24 @@ fn buttons(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
         }
         let hover = "The same upright gets the same number in all panels, following the cameras from this panel on";
         if small(ui, "Number all panels alike", hover, few) {
-            edit(session, "Number all panels alike", &mut |draft| drop(marks::number_alike(draft, panel)));
+            let mut count = 0;
+            edit(session, "Number all panels alike", &mut |draft| count = marks::number_alike(draft, panel));
+            counted = Some(format!("Marks of {count} other panels numbered; look at the last one"));
         }
         let hover = "To panels without marks, at the same place: the scale is taken to be the same in all";
         if small(ui, "Copy to panels without", hover, few) {
             let targets = marks::others(session.draft(), panel);
-            edit(session, "Copy the marks", &mut |draft| drop(marks::copy_marks(draft, panel, &targets)));
+            let mut count = 0;
+            edit(session, "Copy the marks", &mut |draft| count = marks::copy_marks(draft, panel, &targets));
+            counted = Some(format!("Marks copied to {count} panels"));
         }
         if small(ui, "Delete all", "All marks of this panel", none) {
             edit(session, "Delete the marks", &mut |draft| draft.panel_mut(panel).marks.clear());
         }
     });
+    if let Some(counted) = counted {
+        page.messages.note(counted);
+    }
 }
 
 /// The marks in the order of the file, with their numbers to be changed.

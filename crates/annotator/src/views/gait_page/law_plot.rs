@@ -29,8 +29,7 @@ struct Measured {
 pub(super) fn show(ui: &mut Ui, session: &Session, fit: Option<&PlateFit>) {
     let gait = session.draft().manifest.gait;
     let laws: Vec<&ContactLaw> = session.derived.laws().iter().filter(|law| law.gait == gait).collect();
-    let live = session.derived.gait.as_ref().ok();
-    let now = live.map(of_footfalls).unwrap_or_default();
+    let now = session.derived.gait.as_ref().map(of_footfalls).unwrap_or_default();
     let fitted = fit.map(of_fit).unwrap_or_default();
     if laws.is_empty() && now.is_empty() && fitted.is_empty() {
         ui.weak(format!("There is no contact-time law of the {gait} yet."));
@@ -47,7 +46,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, fit: Option<&PlateFit>) {
             points.iter().for_each(|p| plot.point(p.at, p.sd, color(ui, p.kind), is_fit));
         }
     }
-    distances(ui, live, &laws, [&now, &fitted]);
+    distances(ui, &laws, [&now, &fitted]);
     parameters(ui, &laws, gait, usual);
 }
 
@@ -109,16 +108,17 @@ fn draw_curve(ui: &Ui, plot: &Plot, law: &ContactLaw, [low, high]: [f64; 2], usu
 }
 
 /// Measured, the law's, and the distance in percent.
-fn distances(ui: &mut Ui, live: Option<&LiveGait>, laws: &[&ContactLaw], points: [&[Measured]; 2]) {
-    let [now, fitted] = points;
+fn distances(ui: &mut Ui, laws: &[&ContactLaw], [now, fitted]: [&[Measured]; 2]) {
+    let Some(speed_m_s) = now.iter().chain(fitted).map(|point| point.at[0]).next() else {
+        ui.weak("The points are shown when contacts and speed are known.");
+        return;
+    };
     Grid::new("distances from laws").num_columns(4).striped(true).spacing([10.0, 2.0]).show(ui, |ui| {
         ["", "law (s)", "bar (s)", "fit (s)"].into_iter().for_each(|title| drop(ui.weak(title)));
         ui.end_row();
         for kind in LawKind::ALL {
             let law = laws.iter().find(|law| law.law == kind);
-            let speed = live.and_then(|live| live.speed_m_s).map(|speed| speed.value);
-            let speed = speed.or(fitted.first().map(|point| point.at[0]));
-            let law_s = law.zip(speed).map(|(law, speed)| law.curve.contact_time_s(speed));
+            let law_s = law.map(|law| law.curve.contact_time_s(speed_m_s));
             ui.label(RichText::new(name(kind)).color(color(ui, kind)));
             ui.label(law_s.map_or("no law".into(), |seconds| format!("{seconds:.3}")));
             for points in [now, fitted] {

@@ -44,7 +44,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, fit: Option<&PlateFit>) {
     let manifest = &session.draft().manifest;
     let live = session.derived.gait.as_ref();
     let now = live.ok().map(|live| of_footfalls(live, facing));
-    let fitted = fit.map(|fit| of_fit(fit));
+    let fitted = fit.map(of_fit);
     if now.is_some() || fitted.is_some() {
         table(ui, now.as_ref(), fitted.as_ref());
         let analyses = [live.ok().map(|live| &live.analysis), fit.map(|fit| &fit.analysis)];

@@ -5,6 +5,7 @@ use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo
 use muybridge_capture::{Facing, NearOff};
 use muybridge_core::{Limb, Pair};
 use muybridge_fitting::gait_analysis::Support;
+use muybridge_fitting::pipeline::PlateFit;
 
 use super::legible;
 use crate::colors;
@@ -17,16 +18,17 @@ const APART: [f32; 2] = [9.0, 7.0];
 /// Radius of a foot.
 const FOOT: f32 = 4.2;
 
-/// The diagrams in order, from the strike of the left hind.
-pub(super) fn show(ui: &mut Ui, session: &Session) {
-    let Ok(live) = &session.derived.gait else {
+/// The diagrams in order, from the strike of the left hind: the footfall bar's, or the fit's while a leg is missing there.
+pub(super) fn show(ui: &mut Ui, session: &Session, fit: Option<&PlateFit>) {
+    let live = session.derived.gait.as_ref().ok().map(|live| &live.analysis);
+    let Some(analysis) = live.or(fit.map(|fit| &fit.analysis)) else {
         ui.weak("Shown when every leg has a stance and a swing.");
         return;
     };
     let facing = session.facing();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(1.0, 2.0);
-        for support in &live.analysis.supports {
+        for support in &analysis.supports {
             diagram(ui, support, facing);
         }
     });

@@ -5,7 +5,6 @@ use egui::{Align2, FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use muybridge_fitting::footfalls::LANES;
 use muybridge_fitting::pipeline::PlateFit;
 
-use super::lane_name;
 use crate::colors;
 
 /// Width of the lanes' names, screen points.
@@ -38,7 +37,9 @@ fn draw_lanes(ui: &Ui, plate: &PlateFit, lanes: Rect) {
         let top = lanes.top() + LANE * at as f32;
         let lane = Rect::from_min_size(pos2(lanes.left(), top), vec2(lanes.width(), LANE));
         painter.rect_filled(lane.shrink2(vec2(0.0, 1.0)), 2.0, visuals.extreme_bg_color);
-        lane_name(painter, pos2(lane.left() - 6.0, lane.center().y), LANE_NAMES[at], visuals.text_color());
+        let name_at = pos2(lane.left() - 6.0, lane.center().y);
+        let font = FontId::proportional(12.0);
+        painter.text(name_at, Align2::RIGHT_CENTER, LANE_NAMES[at], font, visuals.text_color());
         let contact = &plate.analysis.contacts[plate.plate.facing.limb(side, pair).index()];
         let (strike, duty) = (contact.strike.phase, contact.duty_factor());
         // A stance over the end of the stride is drawn in two pieces.
