@@ -10,10 +10,10 @@ mod loss_work;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::sync::Mutex;
+use std::sync::{Mutex, RwLock};
 use std::time::{Duration, Instant};
 
-use loss_work::{Moment, Work, draft_hash, moment, specimen};
+use loss_work::{Moment, Work, draft_hash, moment, specimen, specimen_in_memory};
 use muybridge_capture::{Document, waiting};
 use muybridge_core::Random;
 use tempfile::TempDir;
@@ -33,6 +33,10 @@ const SEED: &str = "MUYBRIDGE_LOSS_SEED";
 /// Tells a process of this test its folder.
 const FOLDER: &str = "MUYBRIDGE_LOSS_FOLDER";
 
+/// A process that is being started has this one's files open, and their locks, for a moment: none is started while
+/// somebody opens journals here.
+static STARTING: RwLock<()> = RwLock::new(());
+
 fn say(text: &str) {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{text}").unwrap();
@@ -42,7 +46,8 @@ fn say(text: &str) {
 /// A test of this program as a process.
 fn process(command: &mut Command, seed: u64, folder: &Path) -> Child {
     let command = command.env(SEED, seed.to_string()).env(FOLDER, folder);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    let _alone = STARTING.write().unwrap();
+    command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap()
 }
 
 fn asked() -> Option<(u64, PathBuf)> {
@@ -124,7 +129,9 @@ fn journal(journals: &Path) -> Option<PathBuf> {
 
 /// One sequence; whether the kill hit a save.
 fn sequence(seed: u64) -> bool {
-    let (killed, whole) = (specimen(), specimen());
+    // On a disk the kill often meets a program that waits for it; in memory, one that computes or writes.
+    let killed = if seed % 2 == 0 { specimen() } else { specimen_in_memory() };
+    let whole = specimen_in_memory();
     let said = run_and_kill(seed, killed.path());
     let mut work = Work::begin(seed, whole.path(), None);
     let mut moments = vec![work.moment()];
@@ -151,6 +158,7 @@ fn sequence(seed: u64) -> bool {
 
 /// What a person finds at the next start is what was shown last, or with the command in flight.
 fn check_left(seed: u64, folder: &Path, possible: &[Moment]) {
+    let _none_starts = STARTING.read().unwrap();
     let journals = folder.join("journals");
     let offered = waiting(&journals);
     assert!(offered.len() <= 1, "seed {seed}");
@@ -174,7 +182,7 @@ fn check_left(seed: u64, folder: &Path, possible: &[Moment]) {
     // Only a save that was cut short may have to be asked about.
     left.save(true).unwrap();
     let again = Document::open(left.annotation_path(), None).unwrap();
-    assert_eq!(again.draft(), left.draft(), "seed {seed}");
+    assert!(again.draft() == left.draft(), "seed {seed}: what is saved is not what is open");
 }
 
 #[test]
@@ -206,7 +214,8 @@ fn a_kill_costs_at_most_the_command_in_flight() {
 
 #[test]
 fn a_torn_journal_costs_what_was_torn() {
-    for seed in 1000..1030 {
+    for seed in 1000..1020 {
+        let _none_starts = STARTING.read().unwrap();
         let folder = specimen();
         let journals = folder.path().join("journals");
         let mut work = Work::begin(seed, folder.path(), Some(journals.clone()));
@@ -257,6 +266,7 @@ fn goes_on(mut document: Document, path: &Path) {
 
 #[test]
 fn without_a_place_for_the_journal_work_goes_on_and_says_so() {
+    let _none_starts = STARTING.read().unwrap();
     let folder: TempDir = specimen();
     let journals = folder.path().join("journals");
     muybridge_capture::write_atomically(&journals, b"a file where the folder should be").unwrap();

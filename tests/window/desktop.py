@@ -110,8 +110,14 @@ class Program:
         )
         threading.Thread(target=self._listen, daemon=True).start()
         self.link = self._connect(port)
-        self.window = self.wait(lambda: screen.tool("search", "--name", "Muybridge annotator"), "its window")
-        screen.tool("windowfocus", "--sync", self.window.split()[0])
+        self.wait(self._focus, "a window with the keyboard")
+
+    def _focus(self):
+        """Gives the window the keyboard, which a window manager would do; whether it has it."""
+        windows = self.screen.tool("search", "--onlyvisible", "--name", "Muybridge annotator").split()
+        if windows:
+            self.screen.tool("windowfocus", windows[0])
+        return windows and self.screen.tool("getwindowfocus") == windows[0]
 
     def _listen(self):
         for line in self.process.stdout:
@@ -193,7 +199,7 @@ class Program:
 
     def point(self, place):
         """Moves the pointer."""
-        self.screen.tool("mousemove", "--sync", round(place[0]), round(place[1]))
+        self.screen.tool("mousemove", round(place[0]), round(place[1]))
 
     def click(self, target, button=1, **where):
         """Clicks a place, a widget, or a widget of this name."""

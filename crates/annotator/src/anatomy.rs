@@ -1,5 +1,7 @@
 //! Where each point is on the animal: in words, and in a small picture of a standing horse.
 
+use std::sync::LazyLock;
+
 use egui::{Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 use muybridge_capture::{BodyPoint, Facing, KEYPOINT_COUNT, Keypoint, LimbJoint};
 use muybridge_core::{Joints, Limb, Pair, Pose, Skeleton, bone};
@@ -53,8 +55,9 @@ fn thickness_m(bone: usize) -> f32 {
 impl AnatomyPicture {
     /// The picture for an animal that faces one way.
     pub fn new(facing: Facing) -> Self {
-        let skeleton = Skeleton::reference();
-        let joints = Pose::standing(&skeleton).joints(&skeleton);
+        // Made anew in every frame: the skeleton's file is read once.
+        static SKELETON: LazyLock<Skeleton> = LazyLock::new(Skeleton::reference);
+        let joints = Pose::standing(&SKELETON).joints(&SKELETON);
         let mut places = [[0.0; 2]; KEYPOINT_COUNT];
         for keypoint in Keypoint::all() {
             let at = match (keypoint, keypoint.bone(facing)) {

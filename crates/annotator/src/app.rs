@@ -6,6 +6,7 @@ mod file_commands;
 mod menus;
 mod places;
 mod pose_commands;
+mod propose_commands;
 mod second_pass_commands;
 
 use std::path::{Path, PathBuf};

@@ -111,8 +111,9 @@ pub fn moved(ui: &Ui, response: &Response, view: ViewTransform) -> ViewTransform
     let mut view = view;
     if let Some(pointer) = response.hover_pos() {
         let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        let factor = (f64::from(scroll) / SCROLL_POINTS).exp() * f64::from(pinch);
-        view = view.zoomed(factor, pointer);
+        if scroll != 0.0 || pinch != 1.0 {
+            view = view.zoomed((f64::from(scroll) / SCROLL_POINTS).exp() * f64::from(pinch), pointer);
+        }
     }
     let alt = ui.input(|input| input.modifiers.alt);
     let pans = response.dragged_by(PointerButton::Middle)

@@ -76,7 +76,15 @@ pub fn to_words(key: &KeyboardShortcut) -> String {
     let Modifiers { alt, shift, command, ctrl, .. } = key.modifiers;
     let modifiers = [(command || ctrl, "Ctrl+"), (alt, "Alt+"), (shift, "Shift+")];
     let held: String = modifiers.iter().filter(|(held, _)| *held).map(|(_, name)| *name).collect();
-    held + key.logical_key.name()
+    held + key_name(key.logical_key)
+}
+
+/// What stands on the key; arrows by their names.
+fn key_name(key: Key) -> &'static str {
+    match key {
+        Key::ArrowDown | Key::ArrowLeft | Key::ArrowRight | Key::ArrowUp => key.name(),
+        _ => key.symbol_or_name(),
+    }
 }
 
 /// The key of such words.

@@ -1,19 +1,24 @@
 //! Proposals: points tracked from known panels, and what is seen in the photographs without points. In the background.
 
+mod both;
+mod settle;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use egui::Context;
 use image::GrayImage;
-use muybridge_capture::{Draft, Keypoint, Keypoints, Placed};
-use muybridge_imaging::see::{Silhouette, Wall, silhouettes, walls};
-use muybridge_imaging::acquire::{FoundPanels, find_panels};
-use muybridge_imaging::track::{PanelPoints, Proposal, propose};
+use muybridge_capture::{Draft, Keypoint, Keypoints, Panel, Placed};
 use muybridge_imaging::PanelView;
+use muybridge_imaging::acquire::{FoundPanels, find_panels};
+use muybridge_imaging::see::{Silhouette, Wall, silhouettes, walls};
+use muybridge_imaging::track::{PanelPoints, Proposal, propose};
 
+use crate::derived::Derived;
 use crate::job::{Job, take_answer};
 use crate::picture::{PlateImages, Pyramid};
 use crate::toast::Messages;
+use settle::Settling;
 
 /// Longer side of the views that are looked at, px: silhouettes and tracking are as good as at full size (docs/plates.md).
 const VIEW_PX: u32 = 700;
@@ -26,9 +31,19 @@ struct Looked {
     walls: Vec<Wall>,
 }
 
+/// Known panels on one side of another, the one beside it last.
+type KnownSide = Vec<(u32, Keypoints)>;
+
+/// What tracking has found in a panel, and from what.
+struct Evidence {
+    panels: Vec<Panel>,
+    known: Vec<KnownSide>,
+    tracked: Vec<Proposal>,
+}
+
 /// What background work brings back.
 enum Answer {
-    Tracked { panel: u32, proposals: Vec<Proposal>, looked: Arc<Looked> },
+    Tracked { panel: u32, proposals: Vec<Proposal>, evidence: Evidence, looked: Arc<Looked> },
     Ground { lines: Vec<(u32, [[f64; 2]; 2])>, looked: Arc<Looked> },
     Uprights { lines: Uprights, looked: Arc<Looked> },
     Split(FoundPanels),
@@ -55,6 +70,16 @@ pub struct Proposals {
     looked: Option<Arc<Looked>>,
     uprights: Option<Uprights>,
     quality: BTreeMap<(u32, Keypoint), (Placed, f64)>,
+    evidence: BTreeMap<u32, Evidence>,
+}
+
+/// Documents keep a hundredth of a pixel.
+const ROUNDED_PX: f64 = 0.0051;
+
+/// Whether a point is still where and what it was, to the precision of the documents.
+fn is_unmoved(was: &Placed, is: &Placed) -> bool {
+    let near = |(a, b): ([f64; 2], [f64; 2])| a.iter().zip(&b).all(|(a, b)| (a - b).abs() < ROUNDED_PX);
+    was.by == is.by && was.at_px.zip(is.at_px).is_some_and(near)
 }
 
 /// The pictures of a plate, all read.
@@ -71,7 +96,7 @@ impl Proposals {
     /// How sure tracking was of a point, 0 to 1, as long as nobody has moved it.
     pub fn quality(&self, panel: u32, keypoint: Keypoint, placed: &Placed) -> Option<f64> {
         let (was, quality) = self.quality.get(&(panel, keypoint))?;
-        (was == placed).then_some(*quality)
+        is_unmoved(was, placed).then_some(*quality)
     }
 
     /// Looks for the panels of a plate.
@@ -83,28 +108,33 @@ impl Proposals {
         }));
     }
 
-    /// Tracks from known panels, the one beside `panel` last, into it.
-    pub fn track(&mut self, draft: &Draft, known: Vec<u32>, panel: u32, images: &PlateImages, context: &Context) {
+    /// Tracks into `panel` from the known panels on each side of it, the one beside it last, and lays what is found on the
+    /// skeleton. What was tracked before from the same points is only laid on the skeleton anew.
+    pub fn track(
+        &mut self,
+        (draft, derived): (&Draft, &Derived),
+        sides: &[Vec<u32>],
+        panel: u32,
+        images: &PlateImages,
+        context: &Context,
+    ) {
         let Some(pyramids) = pyramids(images).filter(|_| self.running.is_none()) else { return };
-        let (draft, looked) = (draft.clone(), self.looked.clone());
+        let points = |number: &u32| Some((*number, draft.panel(*number)?.keypoints.clone()));
+        let known: Vec<KnownSide> =
+            sides.iter().map(|side| side.iter().filter_map(points).collect()).collect();
+        let panels = draft.manifest.panels.clone();
+        let before = self.evidence.remove(&panel);
+        let before = before.filter(|before| before.known == known && before.panels == panels);
+        let (draft, looked, settling) = (draft.clone(), self.looked.clone(), Settling::new(derived));
         self.running = Some(Job::start(format!("Tracking into panel {panel}"), context, move || {
             let Some(looked) = look(&draft, &pyramids, looked) else { return no_view() };
-            let index = |number: u32| draft.manifest.panels.iter().position(|p| p.panel == number);
-            let points: Vec<(usize, &Keypoints)> = known
-                .iter()
-                .filter_map(|number| Some((index(*number)?, &draft.panel(*number)?.keypoints)))
-                .collect();
-            let known: Vec<PanelPoints> = points
-                .iter()
-                .map(|(at, points)| PanelPoints {
-                    view: &looked.views[*at],
-                    silhouette: Some(&looked.silhouettes[*at].mask),
-                    points,
-                })
-                .collect();
-            let Some(next) = index(panel) else { return no_view() };
-            let proposals = propose(&known, &looked.views[next], Some(&looked.silhouettes[next].mask));
-            Answer::Tracked { panel, proposals, looked: Arc::clone(&looked) }
+            let tracked = match before {
+                Some(before) => Some(before.tracked),
+                None => tracked(&panels, &looked, &known, panel),
+            };
+            let Some(tracked) = tracked else { return no_view() };
+            let proposals = settling.settle(&draft, panel, &tracked);
+            Answer::Tracked { panel, proposals, evidence: Evidence { panels, known, tracked }, looked }
         }));
     }
 
@@ -145,8 +175,9 @@ impl Proposals {
     pub fn finish(&mut self, messages: &mut Messages) -> Option<Found> {
         let answer = take_answer(&mut self.running)?.unwrap_or_else(Answer::Failed);
         match answer {
-            Answer::Tracked { panel, proposals, looked } => {
+            Answer::Tracked { panel, proposals, evidence, looked } => {
                 self.looked = Some(looked);
+                self.evidence.insert(panel, evidence);
                 for proposal in &proposals {
                     self.quality.insert((panel, proposal.keypoint), (proposal.placed, proposal.quality));
                 }
@@ -168,6 +199,24 @@ impl Proposals {
             }
         }
     }
+}
+
+/// Points of a panel, tracked from each side; none for panels that the plate does not have.
+fn tracked(panels: &[Panel], looked: &Looked, sides: &[KnownSide], panel: u32) -> Option<Vec<Proposal>> {
+    let index = |number: u32| panels.iter().position(|p| p.panel == number);
+    let next = index(panel)?;
+    let from_side = |side: &KnownSide| {
+        let known: Vec<PanelPoints> = side
+            .iter()
+            .filter_map(|(number, points)| {
+                let at = index(*number)?;
+                let silhouette = Some(&looked.silhouettes[at].mask);
+                Some(PanelPoints { view: &looked.views[at], silhouette, points })
+            })
+            .collect();
+        propose(&known, &looked.views[next], Some(&looked.silhouettes[next].mask))
+    };
+    sides.iter().map(from_side).reduce(|before, after| both::agreed(&before, &after))
 }
 
 fn no_view() -> Answer {

@@ -186,8 +186,9 @@ impl Session {
         self.preview.is_some()
     }
 
-    /// Makes a change at once, as one step.
+    /// Makes a change at once, as one step. What is being typed or dragged is a step of its own before it.
     pub fn edit(&mut self, label: &str, change: impl FnOnce(&mut Draft)) {
+        self.commit();
         self.document.edit(label, change);
         self.note_change();
     }

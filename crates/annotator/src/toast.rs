@@ -10,7 +10,7 @@ const AT_ONCE: usize = 4;
 const KEPT: usize = 200;
 
 /// Longest message, characters: a damaged file may hold a word of megabytes, which would be quoted.
-const LONGEST: usize = 4000;
+const LONGEST: usize = 3000;
 
 /// How much a message matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,11 +48,8 @@ impl Messages {
         self.add(text.into(), Weight::Trouble);
     }
 
-    fn add(&mut self, mut text: String, weight: Weight) {
-        if let Some((end, _)) = text.char_indices().nth(LONGEST) {
-            text.truncate(end);
-            text.push('…');
-        }
+    fn add(&mut self, text: String, weight: Weight) {
+        let text = shortened(text);
         // The same again replaces the first: a held key must not fill the window.
         self.messages.retain(|message| message.text != text);
         self.messages.push(Message { text, weight, until_s: None });
@@ -92,6 +89,17 @@ impl Messages {
             }
         });
     }
+}
+
+/// Beginning and end of what is too long: which file it is about, and what to do.
+fn shortened(text: String) -> String {
+    let count = text.chars().count();
+    if count <= LONGEST {
+        return text;
+    }
+    let beginning: String = text.chars().take(LONGEST / 2).collect();
+    let end: String = text.chars().skip(count - LONGEST / 2).collect();
+    format!("{beginning} … {end}")
 }
 
 /// Red that is readable on the background.

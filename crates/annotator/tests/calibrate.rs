@@ -12,7 +12,8 @@ use egui::{Context, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use muybridge_capture::{
-    ANNOTATION_SCHEMA, Annotation, BodyPoint, Keypoint, MANIFEST_SCHEMA, Manifest, calibrate, read_json, write_json,
+    ANNOTATION_SCHEMA, Annotation, BodyPoint, Keypoint, MANIFEST_SCHEMA, Manifest, calibrate, read_json,
+    write_json,
 };
 
 /// Precision of a line drawn by hand over the specimen, whose metre is 64 px long: half a pixel at each end.
@@ -36,9 +37,9 @@ impl Person {
         manifest.calibration = None;
         let path = folder.path().join("specimen-trot.json");
         write_json(&path, &manifest).unwrap();
-        std::fs::copy(specimens().join("specimen-trot.jpg"), folder.path().join("specimen-trot.jpg")).unwrap();
-        let places =
-            Places { state: Some(folder.path().join("state")), plates: folder.path().to_path_buf() };
+        std::fs::copy(specimens().join("specimen-trot.jpg"), folder.path().join("specimen-trot.jpg"))
+            .unwrap();
+        let places = Places { state: Some(folder.path().join("state")), plates: folder.path().to_path_buf() };
         let context = Context::default();
         let mut annotator = Annotator::new(&context, places, Some(&path));
         annotator.wait_until_open(&context);
@@ -68,6 +69,18 @@ impl Person {
         self.harness.run_steps(2);
     }
 
+    /// Lets frames pass until work in the background has come to this.
+    fn wait_for(&mut self, done: impl Fn(&Session) -> bool) {
+        for _ in 0..1500 {
+            if done(self.session()) {
+                return;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            self.harness.run_steps(1);
+        }
+        panic!("it does not come to an end: {:?}", self.harness.state().messages.all());
+    }
+
     fn screen(&self, at_px: [f64; 2]) -> Pos2 {
         let canvas = self.harness.get_by_label("Photograph").rect();
         let panel = self.session().panel_place().unwrap();
@@ -75,7 +88,12 @@ impl Person {
     }
 
     fn button(&mut self, at: Pos2, button: PointerButton, pressed: bool) {
-        self.harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE });
+        self.harness.event(egui::Event::PointerButton {
+            pos: at,
+            button,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
         self.harness.run_steps(1);
     }
 
@@ -154,20 +172,42 @@ fn a_drawn_length_an_interval_and_a_ground_line_calibrate_the_plate() {
         read_json(&specimens().join("annotations/specimen-trot.json"), ANNOTATION_SCHEMA).unwrap();
     let known = calibrate(&manifest, &truth).unwrap();
     let mut person = Person::new();
-    assert!(person.harness.query_by_label_contains("Nobody has said yet").is_some());
+    assert!(person.harness.query_all_by_label_contains("Nobody has said yet").next().is_some());
     let first = &truth.panels[0];
     for end in first.ground_px.unwrap() {
         person.click_on(end, PointerButton::Primary);
     }
     assert_eq!(person.undo_label(), Some("Draw the ground line"));
+    let canvas = person.harness.get_by_label("Photograph").rect();
     person.press("Draw a known length");
     person.drag(first.marks[0].at_px, first.marks[1].at_px);
     assert_eq!(person.undo_label(), Some("Draw a known length"));
-    // The field of its length has the keyboard now.
+    assert_eq!(
+        person.harness.get_by_label("Photograph").rect(),
+        canvas,
+        "the forms leave the photograph where it is"
+    );
     person.choose("Unit of Known length: m", "ft");
     person.type_into("Known length", "3.28084");
-    assert!((person.session().draft().manifest.calibration.as_ref().unwrap().scale.known_length.as_ref().unwrap()
-        .mark_spacing_m.value - 1.0).abs() < 1e-5, "shown while it is typed");
+    assert!(
+        (person
+            .session()
+            .draft()
+            .manifest
+            .calibration
+            .as_ref()
+            .unwrap()
+            .scale
+            .known_length
+            .as_ref()
+            .unwrap()
+            .mark_spacing_m
+            .value
+            - 1.0)
+            .abs()
+            < 1e-5,
+        "shown while it is typed"
+    );
     assert_eq!(person.undo_label(), Some("Draw a known length"), "not a step yet");
     person.enter();
     assert_eq!(person.undo_label(), Some("Known length"));
@@ -177,12 +217,16 @@ fn a_drawn_length_an_interval_and_a_ground_line_calibrate_the_plate() {
     person.choose("Cameras: One camera that does not move", "A row of cameras, evenly spaced");
     person.type_into("Camera spacing", "0.20685752");
     person.enter();
-    person.type_into("First axis mark", "1");
-    person.enter();
+    // The first camera is proposed to look where it does: at the middle of its panel.
+    let axis = person.harness.get_by_role_and_label(Role::TextInput, "First axis mark").value().unwrap();
+    assert!((axis.parse::<f64>().unwrap() - 1.0).abs() < 0.02, "{axis}");
     person.type_into("Interval", "0.058728");
     person.enter();
-    let copies: Vec<_> =
-        person.harness.get_all_by_role_and_label(Role::Button, "Copy to panels without").map(|n| n.rect()).collect();
+    let copies: Vec<_> = person
+        .harness
+        .get_all_by_role_and_label(Role::Button, "Copy to panels without")
+        .map(|n| n.rect())
+        .collect();
     for rect in copies {
         let at = rect.center();
         person.harness.hover_at(at);
@@ -201,7 +245,6 @@ fn a_drawn_length_an_interval_and_a_ground_line_calibrate_the_plate() {
         "Copy the marks",
         "Copy the ground line",
         "Interval",
-        "First axis mark",
         "Camera spacing",
         "Position of the cameras",
         "Camera to wall",
@@ -249,7 +292,8 @@ fn bad_numbers_are_refused_with_the_reason_and_change_nothing() {
     person.type_into(value, "15.3");
     assert!(person.harness.query_by_label_contains("Not taken over").is_none());
     person.enter();
-    let height = person.session().draft().manifest.calibration.as_ref().unwrap().scale.withers_height_m.clone();
+    let height =
+        person.session().draft().manifest.calibration.as_ref().unwrap().scale.withers_height_m.clone();
     assert!((height.unwrap().value - 1.6002).abs() < 1e-9);
     // A click elsewhere ends a field as Enter does, and Escape gives it up.
     person.type_into("Interval", "0.05");
@@ -315,4 +359,25 @@ fn a_ground_line_is_dragged_by_its_ends_and_given_up_by_escape() {
     person.drag(moved[0], [240.0, 200.0]);
     let line = person.session().panel_annotation().unwrap().ground_px.unwrap();
     assert!(line[1][0] - line[0][0] > 10.0);
+}
+
+#[test]
+fn uprights_that_are_found_become_numbered_marks() {
+    let truth: Annotation =
+        read_json(&specimens().join("annotations/specimen-trot.json"), ANNOTATION_SCHEMA).unwrap();
+    let mut person = Person::new();
+    person.wait_for(|session| !session.picture_is_missing());
+    person.press("Find the ground lines");
+    person.wait_for(|session| session.panel_annotation().is_some_and(|panel| panel.ground_px.is_some()));
+    person.press("Find uprights");
+    person.wait_for(|session| session.panel_annotation().is_some_and(|panel| !panel.marks.is_empty()));
+    assert_eq!(person.undo_label(), Some("Find uprights"));
+    for panel in &truth.panels[..3] {
+        let found = &person.session().draft().panel(panel.panel).unwrap().marks;
+        assert_eq!(found.len(), panel.marks.len(), "panel {}", panel.panel);
+        for (number, (found, known)) in found.iter().zip(&panel.marks).enumerate() {
+            assert!((found.mark - number as f64).abs() < 1e-9);
+            assert!((found.at_px[0] - known.at_px[0]).abs() < 1.0, "{found:?} {known:?}");
+        }
+    }
 }

@@ -175,32 +175,3 @@ fn a_blind_second_pass_shows_nothing_of_the_fit() {
     assert!(harness.query_all_by_label_contains("Pause").next().is_none());
     assert!(harness.query_all_by_label_contains("Hidden during the blind second pass").next().is_some());
 }
-
-#[test]
-fn zz_cost_temporary() {
-    for page in [Page::Gait, Page::Play] {
-        let (mut harness, _folder) = opened(page);
-        if page == Page::Play {
-            harness.state_mut().session.as_mut().unwrap().play.is_playing = true;
-            harness.state_mut().session.as_mut().unwrap().play.ghosts = true;
-        }
-        let context = harness.ctx.clone();
-        let mut times = Vec::new();
-        let mut state = harness.into_state();
-        for i in 0..80 {
-            let input = egui::RawInput {
-                screen_rect: Some(egui::Rect::from_min_size(Pos2::ZERO, vec2(1360.0, 880.0))),
-                time: Some(100.0 + f64::from(i) / 60.0),
-                ..Default::default()
-            };
-            let start = std::time::Instant::now();
-            let mut output = context.run_ui(input, |ui| state.ui(ui));
-            output.textures_delta.clear();
-            let meshes = context.tessellate(output.shapes, 1.0);
-            times.push(start.elapsed().as_secs_f64() * 1e3);
-            assert!(!meshes.is_empty());
-        }
-        times.sort_by(f64::total_cmp);
-        eprintln!("{page:?}: median {:.2} ms, p95 {:.2} ms", times[40], times[76]);
-    }
-}

@@ -132,16 +132,18 @@ impl Document {
         Ok(document)
     }
 
-    /// A save that was cut short may have written a file already: that change on disk is this document's own.
+    /// A save that was cut short may have written a file already: what is there then is saved, and no one else's change.
     fn know_what_was_written(&mut self) {
         let ours = |path: &Path, text: String| {
             hash_file(path).ok().filter(|on_disk| *on_disk == hash_bytes(text.as_bytes()))
         };
         if let Some(hash) = ours(&self.manifest_path, to_stable_json(&self.draft.manifest)) {
             self.on_disk.manifest = Some(hash);
+            self.saved.manifest = self.draft.manifest.clone();
         }
         if let Some(hash) = ours(&self.annotation_path, to_stable_json(&self.draft.annotation)) {
             self.on_disk.annotation = Some(hash);
+            self.saved.annotation = self.draft.annotation.clone();
         }
     }
 

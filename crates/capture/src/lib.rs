@@ -38,4 +38,4 @@ pub use manifest::{
     Calibration, Camera, Facing, Known, KnownLength, MANIFEST_SCHEMA, Manifest, Panel, Parallax, Plane,
     PlateImage, Position, Scale, ScaleSource, Time, TimeSource,
 };
-pub use validation::{Fault, ImageCheck, Plate, PlateError};
+pub use validation::{Fault, ImageCheck, MIN_POINTS_PER_PANEL, PANEL_MARGIN_PX, Plate, PlateError};

@@ -10,7 +10,7 @@ use crate::manifest::{
 };
 
 /// Fewest points for a panel to count: fewer leave the root and the trunk undetermined.
-const MIN_POINTS_PER_PANEL: usize = 6;
+pub const MIN_POINTS_PER_PANEL: usize = 6;
 /// Fewest panels for a stride: a cyclic curve through fewer says nothing about contacts.
 const MIN_STRIDE_PANELS: usize = 4;
 /// Speeds that are believed of a horse, m/s: from a step in ten seconds to half as fast again as any was ever timed at.
@@ -32,7 +32,7 @@ const MOST_FAULTS: usize = 100;
 /// No point of a plate lies farther from its corner than this, px.
 const FARTHEST_PX: f64 = 1e6;
 /// A point may lie this far outside its panel, px: hooves and noses touch the mount.
-const PANEL_MARGIN_PX: f64 = 12.0;
+pub const PANEL_MARGIN_PX: f64 = 12.0;
 
 /// One thing that is wrong in a document.
 #[derive(Clone, Debug, PartialEq)]

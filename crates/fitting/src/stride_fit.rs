@@ -194,9 +194,11 @@ fn carried_over(from: &StrideFit, problem: &StrideProblem) -> Vec<f64> {
 
 /// Shortest and longest stride the search looks at, as shares of the time the panels span. Below two thirds the
 /// sequence would show the stride one and a half times, above 1.2 a sixth of it would be missing.
-const SEARCH_SPAN: [f64; 2] = [0.67, 1.2];
+pub(crate) const SEARCH_SPAN: [f64; 2] = [0.67, 1.2];
 /// Steps of the coarse search; at 0.53 of a span of ten panels a step is a quarter of a panel.
 const SEARCH_STEPS: usize = 22;
+/// One step of the coarse search as a share of the span.
+pub(crate) const SEARCH_STEP_SHARE: f64 = (SEARCH_SPAN[1] - SEARCH_SPAN[0]) / SEARCH_STEPS as f64;
 
 /// Rounds of refinement; each halves the bracket, four bring it to a sixtieth of a panel.
 const REFINEMENTS: usize = 4;
@@ -211,7 +213,7 @@ pub fn fit_stride_of_unknown_time(
     weights: &Weights,
 ) -> StrideFit {
     let span_s = observation.duration_s();
-    let step_s = span_s * (SEARCH_SPAN[1] - SEARCH_SPAN[0]) / SEARCH_STEPS as f64;
+    let step_s = span_s * SEARCH_STEP_SHARE;
     let exact = |seconds| StrideTime { seconds, sd_s: 0.0 };
     let mut latest = fit_stride(skeleton, observation, exact(span_s), weights);
     let mut best = latest.clone();

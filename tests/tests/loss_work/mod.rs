@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use muybridge_capture::{
     Document, Draft, Event, Instant, Keypoint, KeypointState, Mark, NearOff, Placed, PlacedBy, StanceLabel,
-    to_stable_json,
 };
 use muybridge_core::{Pair, Random};
 use muybridge_tests::repository;
@@ -20,8 +19,16 @@ const OTHER_NAMES: [&str; 3] =
     ["annotations/second.json", "annotations/deep/third.json", "annotations/deep/er/fourth.json"];
 
 /// A copy of the specimen's documents in a folder of their own.
-pub fn specimen() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
+pub(crate) fn specimen() -> TempDir {
+    specimen_in(tempfile::tempdir().unwrap())
+}
+
+/// The same in memory, where the system has such a folder: waiting for the disk, a program does little else.
+pub(crate) fn specimen_in_memory() -> TempDir {
+    specimen_in(tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap())
+}
+
+fn specimen_in(folder: TempDir) -> TempDir {
     std::fs::create_dir(folder.path().join("annotations")).unwrap();
     for file in [NAME.to_string(), format!("annotations/{NAME}")] {
         let from = repository().join("plates/specimens").join(&file);
@@ -36,14 +43,14 @@ fn hash(bytes: &[u8]) -> u64 {
 }
 
 /// What a draft holds; how it names its plate depends on where it is saved, and is left out.
-pub fn draft_hash(draft: &Draft) -> u64 {
+pub(crate) fn draft_hash(draft: &Draft) -> u64 {
     let mut draft = draft.clone();
     draft.annotation.plate.clear();
-    hash(to_stable_json(&draft).as_bytes())
+    hash(serde_json::to_string(&draft).unwrap().as_bytes())
 }
 
 /// All documents of a folder, by name, with the hash of their bytes.
-pub fn documents(folder: &Path) -> Vec<(String, u64)> {
+pub(crate) fn documents(folder: &Path) -> Vec<(String, u64)> {
     let names = [NAME.to_string(), format!("annotations/{NAME}")];
     let names = names.into_iter().chain(OTHER_NAMES.map(String::from));
     names.filter_map(|name| Some((name.clone(), hash(&std::fs::read(folder.join(&name)).ok()?)))).collect()
@@ -51,28 +58,28 @@ pub fn documents(folder: &Path) -> Vec<(String, u64)> {
 
 /// A state, as a person can tell it from others.
 #[derive(Clone, Debug)]
-pub struct Moment {
+pub(crate) struct Moment {
     /// Draft, place, what can be undone and redone, whether it is saved.
-    pub full: u64,
+    pub(crate) full: u64,
     /// The draft alone.
-    pub draft: u64,
+    pub(crate) draft: u64,
     /// The draft with everything undone.
-    pub base: u64,
+    pub(crate) base: u64,
     /// The annotation's path in the folder.
-    pub path: PathBuf,
+    pub(crate) path: PathBuf,
 }
 
 /// The present state of a document.
-pub fn moment(document: &Document, folder: &Path, base: u64) -> Moment {
+pub(crate) fn moment(document: &Document, folder: &Path, base: u64) -> Moment {
     let path = document.annotation_path().strip_prefix(folder).unwrap().to_path_buf();
     let (undo, redo) = (document.undo_label(), document.redo_label());
-    let draft = to_stable_json(document.draft());
+    let draft = serde_json::to_string(document.draft()).unwrap();
     let text = format!("{draft} {undo:?} {redo:?} {} {}", document.is_changed(), path.display());
     Moment { full: hash(text.as_bytes()), draft: draft_hash(document.draft()), base, path }
 }
 
 /// Somebody at work.
-pub struct Work {
+pub(crate) struct Work {
     /// None only while it is opened again.
     document: Option<Document>,
     random: Random,
@@ -82,12 +89,12 @@ pub struct Work {
     saving: bool,
     versions: BTreeSet<(String, u64)>,
     /// Whether the document is closed and opened again at times.
-    pub may_reopen: bool,
+    pub(crate) may_reopen: bool,
 }
 
 impl Work {
     /// Opens the specimen of a folder.
-    pub fn begin(seed: u64, folder: &Path, journals: Option<PathBuf>) -> Self {
+    pub(crate) fn begin(seed: u64, folder: &Path, journals: Option<PathBuf>) -> Self {
         let random = Random::new(seed);
         let versions = documents(folder).into_iter().collect();
         let (folder, may_reopen) = (folder.to_path_buf(), true);
@@ -108,22 +115,22 @@ impl Work {
     }
 
     /// The present state.
-    pub fn moment(&self) -> Moment {
+    pub(crate) fn moment(&self) -> Moment {
         moment(self.document.as_ref().unwrap(), &self.folder, self.base)
     }
 
     /// Why the journal is not written.
-    pub fn fault(&self) -> Option<&str> {
+    pub(crate) fn fault(&self) -> Option<&str> {
         self.document.as_ref().unwrap().journal_fault()
     }
 
     /// Whether the last command was a save.
-    pub fn saving(&self) -> bool {
+    pub(crate) fn saving(&self) -> bool {
         self.saving
     }
 
     /// Every version of every file that was saved.
-    pub fn versions(&self) -> &BTreeSet<(String, u64)> {
+    pub(crate) fn versions(&self) -> &BTreeSet<(String, u64)> {
         &self.versions
     }
 
@@ -132,14 +139,15 @@ impl Work {
     }
 
     /// One command.
-    pub fn step(&mut self) {
+    pub(crate) fn step(&mut self) {
         self.saving = false;
         match self.below(20) {
             0..=2 => drop(self.document().undo()),
             3 | 4 => drop(self.document().redo()),
             5 | 6 => self.save(),
             7 => {
-                let path = self.folder.join(OTHER_NAMES[self.below(OTHER_NAMES.len())]);
+                let name = OTHER_NAMES[self.below(OTHER_NAMES.len())];
+                let path = self.folder.join(name);
                 self.document().save_as(&path, true).unwrap();
                 self.note_versions();
             }
@@ -164,7 +172,7 @@ impl Work {
     }
 
     /// One change.
-    pub fn change(&mut self) {
+    pub(crate) fn change(&mut self) {
         let mut random = self.random.clone();
         while !self.document().edit("A change", |draft| change(draft, &mut random)) {}
         self.random = random;
@@ -238,7 +246,7 @@ fn exchange_panels(draft: &mut Draft, a: u32, b: u32) {
 fn change_words(draft: &mut Draft, random: &mut Random) {
     let letters = ["a", "\u{e9}", "\"", "\\", "\n", "\u{1f40e}", "\u{0}", " ", "{", "\u{2028}"];
     let title = &mut draft.manifest.title;
-    title.push_str(pick(random, &letters));
+    title.push_str(pick::<&str>(random, &letters));
     if title.len() > 60 {
         title.clear();
     }

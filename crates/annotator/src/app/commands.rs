@@ -173,7 +173,10 @@ fn run_on_view(session: &mut Session, command: Command) -> bool {
         C::HoofTrails => shown.hoof_trails = !shown.hoof_trails,
         C::ShowFit => shown.fit = !shown.fit,
         C::ShowMarks => shown.marks = !shown.marks,
-        C::ZoomToFit => session.zoom.reset(),
+        C::ZoomToFit => {
+            session.zoom.reset();
+            session.plate_view = None;
+        }
         C::ZoomIn => session.zoom.zoom_by(1.25),
         C::ZoomOut => session.zoom.zoom_by(0.8),
         C::NextPanel | C::PreviousPanel => {

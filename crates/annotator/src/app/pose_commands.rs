@@ -4,7 +4,6 @@ use egui::Context;
 use muybridge_capture::{Draft, Facing, Keypoint, KeypointState, Placed, PlacedBy, StanceLabel};
 use muybridge_core::Pair;
 use muybridge_fitting::footfalls::{LANES, with_label};
-use muybridge_fitting::posing::{SequencePanel, interpolate};
 use muybridge_imaging::track::Proposal;
 
 use super::Command;
@@ -17,8 +16,6 @@ use crate::toast::Messages;
 /// A nudge, px; and a fine one.
 const NUDGE_PX: f64 = 1.0;
 const FINE_NUDGE_PX: f64 = 0.1;
-/// Fewest points of a panel from which another is tracked.
-const LEAST_KNOWN: usize = 6;
 
 impl Session {
     /// Does a command of the open plate.
@@ -117,7 +114,9 @@ impl Session {
         let at_px = at_px.filter(|_| state != KeypointState::Absent);
         let by = known.map_or(PlacedBy::Hand, |placed| placed.by);
         let label = format!("{} is {}", crate::colors::name(keypoint), format!("{state:?}").to_lowercase());
-        self.edit(&label, |draft| draft.panel_mut(panel).keypoints.insert(keypoint, Placed { at_px, state, by }));
+        self.edit(&label, |draft| {
+            draft.panel_mut(panel).keypoints.insert(keypoint, Placed { at_px, state, by })
+        });
         if state == KeypointState::Absent && self.tool == Tool::Guided {
             self.select_unplaced();
         }
@@ -203,123 +202,9 @@ impl Session {
         self.edit(label, |draft| draft.panel_mut(panel).swap_near_off(pair));
     }
 
-    /// Panels from which this one can be tracked, the one beside it last: two before it, else two after it.
-    fn known_beside(&self) -> Option<Vec<u32>> {
-        let numbers = self.panel_numbers();
-        let at = numbers.iter().position(|number| *number == self.panel)?;
-        let is_known = |panel: &u32| {
-            let placed = self.draft().panel(*panel);
-            placed.is_some_and(|p| p.keypoints.iter().filter(|(_, p)| p.place().is_some()).count() >= LEAST_KNOWN)
-        };
-        let beside = |mut way: Vec<u32>| {
-            way.truncate(2);
-            let known: Vec<u32> = way.into_iter().take_while(is_known).collect();
-            (!known.is_empty()).then(|| known.into_iter().rev().collect::<Vec<u32>>())
-        };
-        let before = beside(numbers[..at].iter().rev().copied().collect());
-        let after = beside(numbers[at + 1..].to_vec());
-        match (before, after) {
-            (Some(before), Some(after)) if after.len() > before.len() => Some(after),
-            (Some(before), _) => Some(before),
-            (None, after) => after,
-        }
-    }
-
-    /// Why nothing can be tracked into this panel.
-    pub fn why_not_track(&self) -> Option<&'static str> {
-        if self.picture_is_missing() {
-            Some("The photograph is not read yet")
-        } else if self.proposals.work().is_some() {
-            Some("Something else is being worked out")
-        } else {
-            self.known_beside().is_none().then_some("Neither the panel before nor the one after has points")
-        }
-    }
-
-    /// Why nothing can be interpolated into this panel.
-    pub fn why_not_interpolate(&self) -> Option<&'static str> {
-        let placed = |p: &&muybridge_capture::PanelAnnotation| {
-            p.panel != self.panel && p.keypoints.iter().filter(|(_, p)| p.place().is_some()).count() >= LEAST_KNOWN
-        };
-        let others = self.draft().annotation.panels.iter().filter(placed).count();
-        (others < 2).then_some("Two other panels must have points")
-    }
-
-    /// Why no pose can be copied into this panel.
-    pub fn why_not_copy(&self) -> Option<&'static str> {
-        let before = self.panel_after(-1).and_then(|panel| self.draft().panel(panel));
-        before.is_none_or(|p| p.keypoints.iter().next().is_none()).then_some("The panel before has no points")
-    }
-
     /// Whether a photograph of the plate is not there (yet).
     pub fn picture_is_missing(&self) -> bool {
         self.images.states().iter().any(|state| !matches!(state, ImageState::Ready(_)))
-    }
-
-    fn propose_tracked(&mut self, context: &Context) {
-        if let Some(known) = self.known_beside() {
-            let draft = self.document.draft().clone();
-            self.proposals.track(&draft, known, self.panel, &self.images, context);
-        }
-    }
-
-    /// The panels of the stride in order of time, as interpolation wants them.
-    fn sequence(&self) -> Vec<SequencePanel> {
-        let draft = self.document.draft();
-        let panel = |panel: u32| {
-            let annotation = draft.panel(panel).cloned();
-            let annotation = annotation.unwrap_or_else(|| muybridge_capture::PanelAnnotation::empty(panel));
-            let camera = *self.derived.cameras.get(&panel)?;
-            let (keypoints, contacts) = (annotation.keypoints, annotation.contacts);
-            Some(SequencePanel { panel, camera, keypoints, contacts })
-        };
-        self.panel_numbers().into_iter().filter_map(panel).collect()
-    }
-
-    fn propose_interpolated(&mut self) {
-        let period = self.derived.footfalls.as_ref().map(|footfalls| footfalls.clock.closes_after_panels());
-        let (skeleton, lengths) = (self.derived.skeleton().clone(), self.derived.lengths);
-        let found = interpolate(&skeleton, self.facing(), &lengths, &self.sequence(), self.panel, period);
-        let points: Vec<(Keypoint, Placed)> = found.iter().map(|(keypoint, placed)| (keypoint, *placed)).collect();
-        self.take_proposed("Propose by interpolation", self.panel, &points);
-    }
-
-    fn propose_fitted(&mut self) {
-        let Some(fitted) = self.fit.latest().cloned() else { return };
-        let (fit, panel) = (&fitted.plate.fit, self.panel);
-        let slot = fit.problem.order.iter().position(|i| fit.observation.panels[*i].camera.panel == panel);
-        let Some(slot) = slot else { return };
-        let kinematics = &fit.kinematics()[slot];
-        let points: Vec<(Keypoint, Placed)> = Keypoint::all()
-            .map(|keypoint| {
-                let known = self.panel_annotation().and_then(|p| p.keypoints.get(keypoint));
-                let state = known.map_or(KeypointState::Visible, |placed| placed.state);
-                let state = if state == KeypointState::Absent { KeypointState::Occluded } else { state };
-                let at_px = Some(fit.place_px(slot, kinematics, keypoint));
-                (keypoint, Placed { at_px, state, by: PlacedBy::Fitted })
-            })
-            .collect();
-        self.take_proposed("Propose from the fit", panel, &points);
-    }
-
-    fn copy_previous(&mut self) {
-        let (Some(from), to) = (self.panel_after(-1), self.panel) else { return };
-        let Some(place) = self.derived.registration(self.document.draft(), from, to) else { return };
-        let Some(source) = self.document.draft().panel(from) else { return };
-        let points: Vec<(Keypoint, Placed)> = source
-            .keypoints
-            .iter()
-            .map(|(keypoint, placed)| {
-                (keypoint, Placed { at_px: placed.at_px.map(&place), by: PlacedBy::Interpolated, ..*placed })
-            })
-            .collect();
-        self.take_proposed("Copy the previous pose", to, &points);
-    }
-
-    /// Takes points over, but never in the place of one that a person has put there; places that are none are left out.
-    fn take_proposed(&mut self, label: &str, panel: u32, points: &[(Keypoint, Placed)]) {
-        self.edit(label, |draft| take_over(draft, panel, points));
-        self.page = Page::Pose;
     }
 
     /// Takes over what was found in the background.
@@ -328,7 +213,8 @@ impl Session {
         self.fit.finish();
         match self.proposals.finish(messages) {
             Some(Found::Points(panel, proposals)) if proposals.is_empty() => {
-                messages.trouble(format!("Panel {panel}: nothing could be tracked; place the points by hand"));
+                messages
+                    .trouble(format!("Panel {panel}: nothing could be tracked; place the points by hand"));
             }
             Some(Found::Points(panel, proposals)) => {
                 let point = |Proposal { keypoint, placed, .. }: &Proposal| (*keypoint, *placed);
@@ -336,7 +222,8 @@ impl Session {
                 self.take_proposed("Propose by tracking", panel, &points);
             }
             Some(Found::Ground(lines)) => {
-                messages.note(format!("Ground found in {} panels; drag its ends where it is off", lines.len()));
+                messages
+                    .note(format!("Ground found in {} panels; drag its ends where it is off", lines.len()));
                 self.edit("Find the ground lines", |draft| panels::take_ground(draft, &lines));
             }
             Some(Found::Panels(found)) => {
@@ -362,16 +249,5 @@ impl Session {
         let (state, dragging) = (self.state(), self.is_dragging());
         let draft = self.draft().clone();
         self.derived.update(&draft, state, self.fit.latest(), dragging);
-    }
-}
-
-fn take_over(draft: &mut Draft, panel: u32, points: &[(Keypoint, Placed)]) {
-    let keypoints = &mut draft.panel_mut(panel).keypoints;
-    for (keypoint, placed) in points {
-        let by_hand = keypoints.get(*keypoint).is_some_and(|placed| placed.by == PlacedBy::Hand);
-        let finite = placed.at_px.iter().flatten().all(|v| v.is_finite());
-        if !by_hand && finite {
-            keypoints.insert(*keypoint, *placed);
-        }
     }
 }

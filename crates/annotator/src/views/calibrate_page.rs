@@ -9,6 +9,7 @@ mod gestures;
 mod layout;
 mod marks;
 mod numbers;
+mod position;
 mod sections;
 mod stride;
 mod tools;
@@ -73,7 +74,11 @@ impl CalibrateState {
 
     fn unit(&self, number: Number) -> Unit {
         let chosen = Self::unit_key(number).and_then(|quantity| self.units.get(&quantity));
-        chosen.copied().unwrap_or(number.units()[0])
+        match (number, chosen.copied().unwrap_or(number.units()[0])) {
+            // A spread in hands and inches would be read as a tenth of what it is.
+            (Number::Spread(_), Unit::Hand) => Unit::Inch,
+            (_, unit) => unit,
+        }
     }
 
     fn set_unit(&mut self, number: Number, unit: Unit) {
@@ -87,7 +92,8 @@ impl CalibrateState {
 /// The photograph with ground line and marks; below it what follows.
 pub fn canvas(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     if !session.panel_numbers().is_empty() {
-        let below = Panel::bottom("what follows").resizable(true).default_size(168.0).size_range(60.0..=420.0);
+        let below =
+            Panel::bottom("what follows").resizable(true).default_size(182.0).size_range(60.0..=420.0);
         below.show(ui, |ui| follows::show(ui, session));
     }
     let Some(canvas) = PanelCanvas::show(ui, session) else { return };
@@ -102,10 +108,12 @@ pub fn canvas(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
 /// Tools and forms.
 pub fn inspector(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     tools::take_found(session, page.messages);
-    tools::show(ui, session, page);
+    tools::choose(ui, session);
     if session.draft().manifest.calibration.is_none() {
         begin::show(ui, session, page);
+        tools::show(ui, session, page);
     } else {
+        tools::show(ui, session, page);
         sections::show(ui, session, page);
     }
 }

@@ -30,8 +30,14 @@ pub fn canvas(ui: &mut Ui, session: &mut Session, _page: &mut PageContext<'_>) {
         _ => session.draft().manifest.images.get(image).map_or([1, 1], |i| [i.width_px, i.height_px]),
     };
     let fitted = ViewTransform::fit_whole(size_px, rect.shrink(8.0));
-    let view = moved(ui, &response, session.plate_view.unwrap_or(fitted)).clamped(size_px, rect);
-    session.plate_view = (view != fitted).then_some(view);
+    let before = session.plate_view.unwrap_or(fitted);
+    let after = moved(ui, &response, before);
+    if after != before {
+        session.plate_view = Some(after);
+    }
+    // The whole plate is fitted anew when the window changes, until somebody looks closer.
+    let view = session.plate_view.map_or(fitted, |view| view.clamped(size_px, rect));
+    session.plate_view = session.plate_view.map(|_| view);
     if let Some((textures, source)) = session.picture(image) {
         textures.draw(&painter, source, &view, Look::default());
     }

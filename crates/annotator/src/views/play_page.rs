@@ -222,7 +222,8 @@ fn figure(ui: &mut Ui, session: &mut Session, motion: &Motion<'_>) {
     let standing = Limb::ALL.map(|limb| motion.stands(limb, phase));
     let now = pose(phase).map(|pose| FigurePose { joints: joints(&skeleton, &pose), standing, ghost: false });
     let mut poses: Vec<FigurePose> = now.into_iter().collect();
-    if session.play.ghosts {
+    // In motion they would only blur, and cost more than the figure itself.
+    if session.play.ghosts && !session.play.is_playing {
         let ghosts = [-GHOSTS, GHOSTS].into_iter().filter_map(|by| pose(phase + by));
         let standing = [false; 4];
         poses.extend(ghosts.map(|pose| FigurePose {
@@ -234,5 +235,5 @@ fn figure(ui: &mut Ui, session: &mut Session, motion: &Motion<'_>) {
     session.figure.set_filmed(motion.facing().side(NearOff::Near));
     let width = ui.available_width();
     session.figure.ui(ui, vec2(width, FIGURE_ASPECT * width), &poses, &figure_colors());
-    ui.checkbox(&mut session.play.ghosts, "A twelfth of a stride before and after");
+    ui.checkbox(&mut session.play.ghosts, "A twelfth of a stride before and after, while paused");
 }

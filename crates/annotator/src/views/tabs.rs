@@ -39,6 +39,8 @@ pub fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
             }
         } else if let Some(pass) = &session.second_pass {
             ui.label(RichText::new(pass.headline(session)).strong());
+        } else if session.panel_numbers().is_empty() {
+            ui.label("No panels yet");
         } else {
             ui.label(format!("Panel {} of {}", session.panel, session.panel_numbers().len()));
         }

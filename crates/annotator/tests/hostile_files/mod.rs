@@ -10,26 +10,26 @@ use muybridge_capture::{Document, Keypoint, write_atomically};
 use serde_json::Value;
 
 /// A file to be dropped.
-pub struct Dropped {
+pub(crate) struct Dropped {
     /// Where it is.
-    pub path: PathBuf,
+    pub(crate) path: PathBuf,
     /// Whether it may turn out to be a plate after all.
-    pub may_open: bool,
+    pub(crate) may_open: bool,
 }
 
 /// The documents and the picture of a good plate.
 #[derive(Clone)]
-pub struct Specimen {
+pub(crate) struct Specimen {
     /// The manifest.
-    pub manifest: Value,
+    pub(crate) manifest: Value,
     /// The annotation.
-    pub annotation: Value,
+    pub(crate) annotation: Value,
     picture: Vec<u8>,
 }
 
 impl Specimen {
     /// As it comes with the program.
-    pub fn read() -> Self {
+    pub(crate) fn read() -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../plates/specimens");
         let json = |name: &str| serde_json::from_slice(&std::fs::read(folder.join(name)).unwrap()).unwrap();
         Self {
@@ -40,7 +40,7 @@ impl Specimen {
     }
 
     /// Lays it into a folder under another name; the annotation's path.
-    pub fn unpack(mut self, folder: &Path, id: &str) -> PathBuf {
+    pub(crate) fn unpack(mut self, folder: &Path, id: &str) -> PathBuf {
         std::fs::create_dir_all(folder.join("annotations")).unwrap();
         if self.manifest["id"].is_string() {
             self.manifest["id"] = id.into();
@@ -57,12 +57,12 @@ impl Specimen {
 }
 
 /// Writes a file.
-pub fn write(path: &Path, content: &[u8]) {
+pub(crate) fn write(path: &Path, content: &[u8]) {
     write_atomically(path, content).unwrap();
 }
 
 /// All hostile files; some are in the folder of journals.
-pub fn hostile_files(folder: &Path, journals: &Path) -> Vec<Dropped> {
+pub(crate) fn hostile_files(folder: &Path, journals: &Path) -> Vec<Dropped> {
     std::fs::create_dir_all(folder).unwrap();
     let mut files = pictures::pictures(&folder.join("pictures"));
     files.extend(documents::documents(&folder.join("documents")));
@@ -101,7 +101,7 @@ fn journal_names(journals: &Path) -> Vec<PathBuf> {
 }
 
 /// Plates that nobody would make, but which are not wrong.
-pub fn odd_plates(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn odd_plates(folder: &Path) -> Vec<PathBuf> {
     let changes: [fn(&mut Specimen); 8] = [
         |plate| plate.manifest["panels"] = Value::Array(Vec::new()),
         |plate| (plate.manifest["calibration"], plate.manifest["facing"]) = (Value::Null, Value::Null),

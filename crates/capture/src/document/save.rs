@@ -46,9 +46,10 @@ impl Document {
         }
         if manifest_changed {
             self.on_disk.manifest = Some(write_in_folder(&self.manifest_path, &self.draft.manifest)?);
+            self.saved.manifest = self.draft.manifest.clone();
         }
         self.on_disk.annotation = Some(write_in_folder(&self.annotation_path, &self.draft.annotation)?);
-        self.saved = self.draft.clone();
+        self.saved.annotation = self.draft.annotation.clone();
         self.record(&Record::Saved {
             on_disk: self.on_disk.clone(),
             annotation_path: self.annotation_path.clone(),

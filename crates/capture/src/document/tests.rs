@@ -222,7 +222,9 @@ fn a_save_cut_short_is_not_somebody_elses_change() {
     crate::write_json(document.manifest_path(), &document.draft().manifest).unwrap();
     drop(document);
     let mut left = Document::recover(&waiting(&journals)[0].journal_path).unwrap();
+    left.undo();
     left.save(false).unwrap();
+    assert_eq!(Document::open(&annotation, None).unwrap().draft(), left.draft());
 }
 
 #[test]

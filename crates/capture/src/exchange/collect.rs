@@ -9,9 +9,8 @@ use super::{ExchangeError, Format, NameTable, PanelPictures};
 use crate::annotation::{KeypointState, Keypoints, Placed, PlacedBy};
 use crate::keypoint::Keypoint;
 use crate::manifest::{Manifest, Panel};
+use crate::validation::PANEL_MARGIN_PX;
 
-/// A point may lie this far outside its panel, px, as in the validation of annotations: hooves and noses touch the mount.
-const PANEL_MARGIN_PX: f64 = 12.0;
 /// Steps of an imported coordinate, 1/px: a point that was placed at 123.4 comes back as 123.4.
 const STEPS_PER_PX: f64 = 1e6;
 

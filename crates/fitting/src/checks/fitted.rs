@@ -10,7 +10,7 @@ use crate::held_out::quantile;
 use crate::layout::BENDS;
 use crate::levenberg::LeastSquares;
 use crate::pipeline::PlateFit;
-use crate::stride_fit::PointResidual;
+use crate::stride_fit::{PointResidual, SEARCH_SPAN, SEARCH_STEP_SHARE};
 
 /// A point farther from the fit than this many standard deviations of a coordinate is worth a look: one in 90 by chance.
 const RESIDUAL_NOTE: f64 = 3.0;
@@ -20,10 +20,6 @@ const RESIDUAL_WARNING: f64 = 5.0;
 const SLIP: f64 = 0.06;
 /// The trunk may stand this much higher in the last phase than the first phase continues, withers heights.
 const JUMP: f64 = 0.03;
-/// Shortest and longest stride the search of the fit looks at, as shares of the time the panels span.
-const SEARCHED: [f64; 2] = [0.67, 1.2];
-/// A stride time this near to the end of the search, as a share of the span, was stopped by it: one step of the search.
-const SEARCH_STEP: f64 = 0.024;
 /// A bend within this of its limit is at it, rad.
 const AT_LIMIT_RAD: f64 = 1e-6;
 /// Trunk points that ride with the body.
@@ -79,7 +75,7 @@ fn loop_open(fit: &PlateFit) -> Vec<Concern> {
     let stated = fit.plate.annotation.stride.closes_after_panels.is_some()
         || fit.plate.calibration.time.stride_time_s.is_some();
     let share = fit.fit.stride_time.seconds / fit.fit.observation.duration_s();
-    if !stated && SEARCHED.iter().any(|end| (share - end).abs() < SEARCH_STEP) {
+    if !stated && SEARCH_SPAN.iter().any(|end| (share - end).abs() < SEARCH_STEP_SHARE) {
         let text = format!(
             "the movement closes on itself nowhere in the panels (stride time {:.3} s is the end of the search); \
              say after how many panels it closes",

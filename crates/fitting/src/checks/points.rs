@@ -1,13 +1,9 @@
 //! Points outside their panel, and points nobody has placed.
 
-use muybridge_capture::{Annotation, Keypoint, Manifest, PanelUse};
+use muybridge_capture::{Annotation, Keypoint, MIN_POINTS_PER_PANEL, Manifest, PANEL_MARGIN_PX, PanelUse};
 
 use super::{Concern, ConcernKind, Severity, name};
 
-/// A point may lie this far outside its panel, px: hooves and noses touch the mount. The validation says the same.
-const MARGIN_PX: f64 = 12.0;
-/// With fewer points a panel cannot be fitted; the validation says the same.
-const LEAST_POINTS: usize = 6;
 /// Names of points in a sentence, at most.
 const NAMED: usize = 4;
 
@@ -18,7 +14,7 @@ pub(super) fn concerns(annotation: &Annotation, manifest: &Manifest) -> Vec<Conc
         let outside: Vec<Keypoint> = panel
             .keypoints
             .iter()
-            .filter(|(_, placed)| placed.place().is_some_and(|at| !place.contains(at, MARGIN_PX)))
+            .filter(|(_, placed)| placed.place().is_some_and(|at| !place.contains(at, PANEL_MARGIN_PX)))
             .map(|(keypoint, _)| keypoint)
             .collect();
         if !outside.is_empty() {
@@ -32,7 +28,7 @@ pub(super) fn concerns(annotation: &Annotation, manifest: &Manifest) -> Vec<Conc
             && (annotation.stride.first..=annotation.stride.last).contains(&panel.panel);
         if of_stride && !missing.is_empty() {
             let placed = panel.keypoints.iter().filter(|(_, placed)| placed.place().is_some()).count();
-            let severity = if placed < LEAST_POINTS { Severity::Warning } else { Severity::Note };
+            let severity = if placed < MIN_POINTS_PER_PANEL { Severity::Warning } else { Severity::Note };
             let text = format!("{} not placed yet; place or call absent", list(&missing));
             concerns.push(on_panel(ConcernKind::MissingPoints, severity, panel.panel, missing, text));
         }

@@ -4,8 +4,8 @@ use egui::{Button, Frame, RichText, Ui, vec2};
 use muybridge_capture::{ScaleSource, TimeSource};
 
 use super::layout::remark;
-use super::sections::Cameras;
-use super::{defaults, entry};
+use super::position::Cameras;
+use super::{Tool, defaults, entry};
 use crate::app::PageContext;
 use crate::session::Session;
 
@@ -26,23 +26,32 @@ impl Default for Kinds {
 
 /// Asks what is known; a click begins the calibration with it.
 pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
-    ui.separator();
     ui.label(RichText::new("Nobody has said yet how scale, position and time are known").strong().size(15.0));
     remark(ui, "Choose what is known. The numbers come next; each is assumed until you type a better one.");
     let mut kinds = session.calibrate.begin;
     Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        options(ui, "How large is it?", &mut kinds.scale, &[
-            (ScaleSource::KnownLength, "A length in the picture is known"),
-            (ScaleSource::WithersHeight, "The animal's height at the withers"),
-        ]);
+        options(
+            ui,
+            "How large is it?",
+            &mut kinds.scale,
+            &[
+                (ScaleSource::KnownLength, "A length in the picture is known"),
+                (ScaleSource::WithersHeight, "The animal's height at the withers"),
+            ],
+        );
         options(ui, "Where do the cameras stand?", &mut kinds.cameras, &Cameras::NAMES);
-        options(ui, "When was each panel taken?", &mut kinds.time, &[
-            (Some(TimeSource::Interval), "The interval between panels is known"),
-            (Some(TimeSource::Speed), "The animal's speed is known"),
-            (Some(TimeSource::StrideTime), "The time of one stride is known"),
-            (None, "Nothing is known: assume an interval"),
-        ]);
+        options(
+            ui,
+            "When was each panel taken?",
+            &mut kinds.time,
+            &[
+                (Some(TimeSource::Interval), "The interval between panels is known"),
+                (Some(TimeSource::Speed), "The animal's speed is known"),
+                (Some(TimeSource::StrideTime), "The time of one stride is known"),
+                (None, "Nothing is known: assume an interval"),
+            ],
+        );
     });
     session.calibrate.begin = kinds;
     ui.add_space(6.0);
@@ -54,7 +63,13 @@ pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_
         entry::attempt(session, page.messages, "Begin calibration", |draft| {
             draft.manifest.calibration = Some(begun);
         });
+        let unmarked = session.panel_annotation().is_none_or(|panel| panel.marks.len() < 2);
+        if kinds.scale == ScaleSource::KnownLength && unmarked {
+            session.calibrate.tool = Tool::Length;
+        }
     }
+    ui.add_space(6.0);
+    ui.separator();
 }
 
 fn options<T: Copy + PartialEq>(ui: &mut Ui, question: &str, now: &mut T, choices: &[(T, &str)]) {

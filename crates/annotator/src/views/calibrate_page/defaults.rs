@@ -26,6 +26,13 @@ pub(super) fn known(quantity: Quantity) -> Known {
     }
 }
 
+/// Corrects the words that go with a default when another value is typed in its place.
+pub(super) fn note_typed(quantity: Quantity, typed: &mut Known) {
+    if typed.from == known(quantity).from {
+        typed.from = "assumed: typed without saying where it is from".into();
+    }
+}
+
 /// A length between marks in the plane of the animal.
 pub(super) fn known_length() -> KnownLength {
     KnownLength { mark_spacing_m: known(Quantity::MarkSpacing), plane: Plane::Track }

@@ -80,9 +80,8 @@ fn draw_metre(canvas: &PanelCanvas, session: &Session) {
     let [x_m, y_m, _] = camera.world_from_plate(share(0.04), 0.0);
     // Away from the edge, whichever way the animal faces.
     let ahead = if camera.forward[0] >= 0.0 { 1.0 } else { -1.0 };
-    let ends = [x_m, x_m + ahead].map(|x| {
-        canvas.view.screen_from_plate(camera.plate_from_world([x, y_m, 0.0])) - vec2(0.0, 10.0)
-    });
+    let ends = [x_m, x_m + ahead]
+        .map(|x| canvas.view.screen_from_plate(camera.plate_from_world([x, y_m, 0.0])) - vec2(0.0, 10.0));
     canvas.painter.line_segment(ends, Stroke::new(6.0, Color32::from_black_alpha(150)));
     canvas.painter.line_segment(ends, Stroke::new(2.5, Color32::WHITE));
     let at = ends[0] + 0.5 * (ends[1] - ends[0]) - vec2(0.0, 6.0);
@@ -103,9 +102,15 @@ pub(super) fn hint(canvas: &PanelCanvas, session: &Session) {
     let bare = panel.is_none_or(|panel| panel.ground_px.is_none());
     let text = match (session.calibrate.tool, session.calibrate.first_end_px) {
         (Tool::Ground | Tool::Length, Some(_)) => "Click the other end; Escape gives up".to_string(),
-        (Tool::Ground, None) if bare => "Click two points on the ground under the near hooves, or drag".into(),
-        (Tool::Ground, None) => "Drag the ends of the ground line; drag marks; right click deletes a mark".into(),
-        (Tool::Length, None) => "Drag along a length that is known, then type it; it replaces this panel's marks".into(),
+        (Tool::Ground, None) if bare => {
+            "Click two points on the ground under the near hooves, or drag".into()
+        }
+        (Tool::Ground, None) => {
+            "Drag the ends of the ground line; drag marks; right click deletes a mark".into()
+        }
+        (Tool::Length, None) => {
+            "Drag along a length that is known, then type it; it replaces this panel's marks".into()
+        }
         (Tool::Marks, _) => {
             let next = marks::next_number(panel, session.calibrate.first_mark);
             format!("Click: mark {}. Drag moves a mark, right click deletes it", number(next))

@@ -147,7 +147,9 @@ pub(super) fn origin(ui: &mut Ui, session: &mut Session, quantity: Quantity) {
     let Some(mut text) = known.map(|known| known.from.clone()) else { return };
     let label = format!("{}, where from", quantity.name());
     let id = Id::unique(("origin", quantity));
-    let edit = TextEdit::multiline(&mut text).id(id).desired_rows(1).desired_width(f32::INFINITY);
+    // The scroll bar needs the rest.
+    let width = ui.available_width() - 14.0;
+    let edit = TextEdit::multiline(&mut text).id(id).desired_rows(1).desired_width(width);
     let response = ui.add(edit.return_key(None).hint_text("printed where, or assumed why"));
     response.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &label));
     if response.changed() {

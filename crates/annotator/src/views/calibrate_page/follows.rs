@@ -1,7 +1,7 @@
 //! What follows from the calibration, and where its sources disagree.
 
 use egui::{Grid, Label, RichText, ScrollArea, Ui, vec2};
-use muybridge_capture::{BodyPoint, Disagreement, Estimate, Keypoint, PanelUse, PlateCalibration};
+use muybridge_capture::{BodyPoint, Disagreement, Estimate, Keypoint, PlateCalibration};
 
 use super::layout::remark;
 use super::marks::MarkRow;
@@ -13,16 +13,21 @@ use crate::session::Session;
 /// Standard deviations beyond which two sources are not both right.
 const SUSPECT_SIGMAS: f64 = 2.0;
 /// Longest name of a source that is shown whole, characters.
-const SOURCE_CHARS: usize = 34;
+const SOURCE_CHARS: usize = 25;
 /// Columns of the scales by panel.
-const SCALE_COLUMNS: usize = 4;
+const SCALE_COLUMNS: usize = 2;
+/// Height of a row of numbers, screen points.
+const ROW: f32 = 15.0;
+/// A panel whose scale differs by more from the middle one has a wrong mark: panels of one plate are printed alike.
+const ODD_SCALE: f64 = 0.06;
 
 /// Numbers, disagreements, scales of the panels: side by side.
 pub(super) fn show(ui: &mut Ui, session: &Session) {
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         ui.add_space(4.0);
         ui.horizontal_top(|ui| {
-            ui.spacing_mut().item_spacing.x = 14.0;
+            ui.spacing_mut().item_spacing.x = 12.0;
+            ui.spacing_mut().interact_size.y = ROW;
             ui.vertical(|ui| match &session.derived.calibration {
                 Ok(plate) => results(ui, session, plate),
                 Err(error) => not_yet(ui, session, error),
@@ -78,15 +83,19 @@ fn results(ui: &mut Ui, session: &Session, plate: &PlateCalibration) {
         }
         line(ui, "Speed", format!("{} m/s", with_sd(plate.speed_m_s)));
         line(ui, "Interval", format!("{} s", with_sd(plate.interval_s)));
+        let relative = |estimate: Estimate| estimate.sd / estimate.value;
+        let times = |value: f64, relative: f64| with_sd(Estimate { value, sd: value * relative });
         if let Some(last) = plate.stride.last() {
-            line(ui, "First to last panel", format!("{} s", number(last.time_s)));
+            let total = times(last.time_s, relative(plate.interval_s));
+            line(ui, "First to last panel", format!("{total} s"));
         }
         if let Some(fitted) = session.fit.latest() {
-            let stride_time = fitted.plate.fit.stride_time;
-            let shown = Estimate { value: stride_time.seconds, sd: stride_time.sd_s };
-            line(ui, "Stride time, fitted", format!("{} s", with_sd(shown)));
-            let length_m = stride_time.seconds * plate.speed_m_s.value;
-            line(ui, "Stride length", format!("{} m", number(length_m)));
+            let fit = fitted.plate.fit.stride_time;
+            let stride_time = Estimate { value: fit.seconds, sd: fit.sd_s };
+            line(ui, "Stride time, fitted", format!("{} s", with_sd(stride_time)));
+            let length_m = stride_time.value * plate.speed_m_s.value;
+            let length = times(length_m, relative(stride_time).hypot(relative(plate.speed_m_s)));
+            line(ui, "Stride length", format!("{length} m"));
         }
     });
 }
@@ -113,7 +122,7 @@ fn disagreements(ui: &mut Ui, found: &[Disagreement]) {
         remark(ui, "Each quantity has one source only.");
         return;
     }
-    Grid::new("disagreements").num_columns(4).striped(true).spacing([14.0, 4.0]).show(ui, |ui| {
+    Grid::new("disagreements").num_columns(4).striped(true).spacing([12.0, 3.0]).show(ui, |ui| {
         for title in ["Quantity", "Used", "Other source", "Differs by"] {
             remark(ui, title);
         }
@@ -150,10 +159,11 @@ fn differs(ui: &mut Ui, disagreement: &Disagreement) {
         ui.add(Label::new(percent).extend());
         let words = match (sigmas.is_finite(), suspect) {
             (false, _) => "both said to be exact".to_string(),
-            (true, false) => format!("{sigmas:.1} standard deviations"),
-            (true, true) => format!("{sigmas:.1} standard deviations: look again"),
+            (true, false) => format!("{sigmas:.1} sigma"),
+            (true, true) => format!("{sigmas:.1} sigma: look again"),
         };
-        ui.add(Label::new(RichText::new(words).color(color).size(12.0)).extend());
+        let hover = "Difference over its standard deviation; more than 2 is hardly chance";
+        ui.add(Label::new(RichText::new(words).color(color).size(12.0)).extend()).on_hover_text(hover);
     });
 }
 
@@ -172,13 +182,23 @@ fn scales(ui: &mut Ui, session: &Session) {
             spacing_m.map(|spacing_m| row.px_per_mark.abs() / spacing_m)
         }
     };
-    Grid::new("scales").num_columns(2 * SCALE_COLUMNS).spacing([8.0, 2.0]).show(ui, |ui| {
-        for (at, panel) in session.panel_numbers().into_iter().enumerate() {
+    let scales: Vec<(u32, Option<f64>)> =
+        session.panel_numbers().into_iter().map(|panel| (panel, scale(panel))).collect();
+    let mut sorted: Vec<f64> = scales.iter().filter_map(|(_, scale)| *scale).collect();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN);
+    let grid = Grid::new("scales").num_columns(2 * SCALE_COLUMNS).min_col_width(14.0).spacing([10.0, 2.0]);
+    grid.show(ui, |ui| {
+        for (at, (panel, scale)) in scales.into_iter().enumerate() {
             ui.label(RichText::new(panel.to_string()).weak());
-            let unused = session.draft().panel(panel).is_some_and(|p| p.usage == PanelUse::Unused);
-            let text = scale(panel).map(|px| format!("{px:.1}"));
-            let none = if unused { "unused" } else { "none" };
-            ui.add(Label::new(text.unwrap_or_else(|| none.into())).extend());
+            match scale {
+                Some(px) if (px / middle - 1.0).abs() > ODD_SCALE => {
+                    let text = RichText::new(format!("{px:.1}")).color(ui.visuals().warn_fg_color);
+                    ui.label(text).on_hover_text("Unlike the other panels: look at its marks");
+                }
+                Some(px) => drop(ui.label(format!("{px:.1}"))),
+                None => drop(ui.label(RichText::new("none").weak())),
+            }
             if (at + 1) % SCALE_COLUMNS == 0 {
                 ui.end_row();
             }

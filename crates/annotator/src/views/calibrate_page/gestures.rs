@@ -1,6 +1,9 @@
 //! What the pointer does on the photograph: drags of ends and marks, new lines, new marks.
 
-use egui::{Color32, CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, accesskit::Role};
+use egui::{
+    Color32, CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo,
+    accesskit::Role,
+};
 use muybridge_capture::Mark;
 
 use super::numbers::{Number, Quantity};
@@ -44,7 +47,14 @@ pub(super) fn handles(ui: &mut Ui, canvas: &PanelCanvas, session: &mut Session) 
     }
 }
 
-fn handle(ui: &Ui, canvas: &PanelCanvas, at_px: [f64; 2], name: &str, color: Color32, hint: bool) -> Response {
+fn handle(
+    ui: &Ui,
+    canvas: &PanelCanvas,
+    at_px: [f64; 2],
+    name: &str,
+    color: Color32,
+    hint: bool,
+) -> Response {
     let at = canvas.view.screen_from_plate(at_px);
     let rect = Rect::from_center_size(at, Vec2::splat(2.0 * GRASP)).intersect(canvas.painter.clip_rect());
     let response = ui.interact(rect, ui.scope_id().with(("calibrate", name)), Sense::click_and_drag());

@@ -7,7 +7,7 @@ const NAMES: f32 = 92.0;
 /// Height of a row.
 const ROW: f32 = 22.0;
 /// Width of a number's field.
-pub(super) const FIELD: f32 = 62.0;
+pub(super) const FIELD: f32 = 56.0;
 
 /// A part of the form that can be folded.
 pub(super) fn group(ui: &mut Ui, title: &str, open: bool, content: impl FnOnce(&mut Ui)) {
@@ -22,6 +22,8 @@ pub(super) fn group(ui: &mut Ui, title: &str, open: bool, content: impl FnOnce(&
 /// A name and what belongs to it.
 pub(super) fn row<R>(ui: &mut Ui, name: &str, explanation: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
+        // Narrow, so that a number with its longest unit fits beside its name.
+        ui.spacing_mut().item_spacing.x = 6.0;
         ui.allocate_ui_with_layout(vec2(NAMES, ROW), Layout::left_to_right(Align::Center), |ui| {
             ui.set_min_width(NAMES);
             let label = ui.add(Label::new(name).truncate());
@@ -58,9 +60,9 @@ pub(super) fn choose<T: PartialEq + Copy>(
         }
     });
     let label = format!("{name}: {shown}");
-    response.response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::accesskit::Role::ComboBox, true, &label)
-    });
+    response
+        .response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::ComboBox, true, &label));
     chosen
 }
 

@@ -2,6 +2,7 @@
 
 use muybridge_capture::{Calibration, Draft, Known, Parallax, Plane, Position};
 
+use super::defaults;
 use super::units::{DURATIONS, LENGTHS, PLAIN, SPEEDS, Unit};
 
 /// A quantity that is known with a standard deviation.
@@ -23,7 +24,7 @@ impl Quantity {
         match self {
             Self::MarkSpacing => "Known length",
             Self::WithersHeight => "Withers height",
-            Self::ScaleRatio => "Track larger by",
+            Self::ScaleRatio => "Track over wall",
             Self::CameraSpacing => "Camera spacing",
             Self::Interval => "Interval",
             Self::Speed => "Speed",
@@ -178,7 +179,10 @@ impl Number {
         }
         let Some(calibration) = &mut draft.manifest.calibration else { return };
         let place = match self {
-            Self::Value(quantity) => quantity.of_mut(calibration).map(|known| &mut known.value),
+            Self::Value(quantity) => quantity.of_mut(calibration).map(|known| {
+                defaults::note_typed(quantity, known);
+                &mut known.value
+            }),
             Self::Spread(quantity) => quantity.of_mut(calibration).map(|known| &mut known.sd),
             _ => self.place_mut(calibration),
         };
@@ -196,7 +200,9 @@ impl Number {
             (Self::CameraToWall, Some(Plane::Wall(Parallax::Distances { camera_to_wall_m, .. })), _) => {
                 Some(camera_to_wall_m)
             }
-            (Self::FirstAxisMark, _, Position::CameraSpacing { first_axis_mark, .. }) => Some(first_axis_mark),
+            (Self::FirstAxisMark, _, Position::CameraSpacing { first_axis_mark, .. }) => {
+                Some(first_axis_mark)
+            }
             (Self::FixedMark, _, Position::FixedMark { mark }) => Some(mark),
             _ => None,
         }

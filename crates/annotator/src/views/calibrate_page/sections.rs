@@ -4,14 +4,16 @@ use egui::Ui;
 use muybridge_capture::{Calibration, Draft, Parallax, Plane, Position, ScaleSource, TimeSource};
 
 use super::layout::{FIELD, choose, group, remark, row};
-use super::marks::MarkRow;
 use super::numbers::{Number, Quantity};
 use super::{defaults, entry};
 use crate::app::PageContext;
 use crate::session::Session;
 
+/// Width of a list beside a name, screen points.
+const LIST: f32 = 160.0;
+
 /// A change of the calibration by a click.
-fn change(
+pub(super) fn change(
     session: &mut Session,
     page: &mut PageContext<'_>,
     label: &str,
@@ -27,7 +29,7 @@ fn change(
 /// All forms.
 pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     group(ui, "Scale", true, |ui| scale(ui, session, page));
-    group(ui, "Position of the cameras", true, |ui| position(ui, session, page));
+    group(ui, "Position of the cameras", true, |ui| super::position::show(ui, session, page));
     group(ui, "Time", true, |ui| time(ui, session, page));
     group(ui, "Stride", true, |ui| super::stride::show(ui, session, page));
     group(ui, "Camera", false, |ui| {
@@ -37,12 +39,12 @@ pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_
     });
 }
 
-fn calibration(session: &Session) -> Option<&Calibration> {
+pub(super) fn calibration(session: &Session) -> Option<&Calibration> {
     session.draft().manifest.calibration.as_ref()
 }
 
 /// A value with its unit, its standard deviation, and where it is from.
-fn known(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>, quantity: Quantity) {
+pub(super) fn known(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>, quantity: Quantity) {
     let Some(was_assumed) = calibration(session).and_then(|c| quantity.of(c)).map(|known| known.assumed)
     else {
         return;
@@ -96,15 +98,15 @@ fn remove(ui: &mut Ui, name: &str, drives: bool) -> bool {
 
 fn scale(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     let Some(now) = calibration(session).map(|c| c.scale.driven_by) else { return };
-    let sources =
-        [(ScaleSource::KnownLength, "Known length"), (ScaleSource::WithersHeight, "Withers height")];
-    row(ui, "Driven by", "What the fit uses; the other is compared with it", |ui| {
-        for (source, title) in sources {
-            if ui.selectable_label(now == source, title).clicked() && now != source {
-                change(session, page, "Source of scale", |c| defaults::give_scale(c, source));
-            }
-        }
-    });
+    let sources = [
+        (ScaleSource::KnownLength, "the known length", None),
+        (ScaleSource::WithersHeight, "the withers height", None),
+    ];
+    let why = "What the fit uses; the other is compared with it";
+    let chosen = row(ui, "Driven by", why, |ui| choose(ui, "Scale driven by", now, &sources, LIST));
+    if let Some(source) = chosen {
+        change(session, page, "Source of scale", |c| defaults::give_scale(c, source));
+    }
     if calibration(session).is_some_and(|c| c.scale.known_length.is_some()) {
         known(ui, session, page, Quantity::MarkSpacing);
         plane(ui, session, page);
@@ -171,7 +173,7 @@ fn plane(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
         (Stand::Stance, "on a wall: from stance", why_not),
     ];
     let why = "A wall is farther away than the animal, which so appears larger (parallax)";
-    let chosen = row(ui, "Marks stand", why, |ui| choose(ui, "Marks stand", now, &choices, 150.0));
+    let chosen = row(ui, "Marks stand", why, |ui| choose(ui, "Marks stand", now, &choices, LIST));
     if let Some(stand) = chosen {
         change(session, page, "Where the marks stand", |c| {
             if let Some(length) = &mut c.scale.known_length {
@@ -184,7 +186,8 @@ fn plane(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
         Stand::Distances => {
             let both = [Number::CameraToTrack, Number::CameraToWall];
             for number in both {
-                row(ui, &number.name(), "From the lens, straight across the track", |ui| {
+                let name = if number == Number::CameraToTrack { "Lens to track" } else { "Lens to wall" };
+                row(ui, name, "From the lens, straight across the track", |ui| {
                     entry::number(ui, session, number, FIELD);
                     unit(ui, session, number);
                 });
@@ -200,119 +203,31 @@ fn plane(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     }
 }
 
-/// How cameras stand.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Cameras {
-    Fixed,
-    Spaced,
-    FixedMark,
-}
-
-impl Cameras {
-    pub(super) const NAMES: [(Self, &'static str); 3] = [
-        (Self::Fixed, "One camera that does not move"),
-        (Self::Spaced, "A row of cameras, evenly spaced"),
-        (Self::FixedMark, "A row: seen on one fixed mark"),
-    ];
-
-    fn of(position: &Position) -> Self {
-        match position {
-            Position::FixedCamera => Self::Fixed,
-            Position::CameraSpacing { .. } => Self::Spaced,
-            Position::FixedMark { .. } => Self::FixedMark,
-        }
-    }
-
-    pub(super) fn position(self, draft: &Draft) -> Position {
-        let first = draft.annotation.stride.first;
-        match self {
-            Self::Fixed => Position::FixedCamera,
-            Self::Spaced => defaults::battery(middle_mark(draft).unwrap_or(0.0)),
-            Self::FixedMark => {
-                let marks = draft.panel(first).and_then(|panel| panel.marks.first());
-                Position::FixedMark { mark: marks.map_or(0.0, |mark| mark.mark) }
-            }
-        }
-    }
-}
-
-/// The number, to a hundredth, of the mark in the middle of the stride's first panel, where its camera looks.
-fn middle_mark(draft: &Draft) -> Option<f64> {
-    let first = draft.annotation.stride.first;
-    let row = MarkRow::through(draft.panel(first)?)?;
-    let place = draft.manifest.panels.iter().find(|panel| panel.panel == first)?;
-    Some((100.0 * row.number_at(place.centre_px())).round() / 100.0)
-}
-
-fn position(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
-    let Some(calibration) = calibration(session) else { return };
-    let now = Cameras::of(&calibration.position);
-    let plane = calibration.scale.known_length.as_ref().map(|length| &length.plane);
-    let needs_row = matches!(plane, Some(Plane::Wall(Parallax::FromStance)))
-        .then_some("Parallax is measured from stance, which needs the spacing of the cameras");
-    let choices = Cameras::NAMES
-        .map(|(cameras, title)| (cameras, title, needs_row.filter(|_| cameras != Cameras::Spaced)));
-    let width = ui.available_width() - 8.0;
-    if let Some(cameras) = choose(ui, "Cameras", now, &choices, width) {
-        let position = cameras.position(session.draft());
-        change(session, page, "Position of the cameras", |c| c.position = position);
-    }
-    ui.add_space(2.0);
-    match now {
-        Cameras::Fixed => remark(ui, "All panels are seen from one place; positions are read off the picture."),
-        Cameras::Spaced => {
-            known(ui, session, page, Quantity::CameraSpacing);
-            let why = "Number of the mark opposite the first panel's camera; 3.7 lies between marks 3 and 4";
-            row(ui, "First axis mark", why, |ui| {
-                entry::number(ui, session, Number::FirstAxisMark, FIELD);
-                let middle = middle_mark(session.draft());
-                let button = ui.add_enabled(middle.is_some(), egui::Button::new("Middle of the panel"));
-                let why_not = "Place two marks in the stride's first panel";
-                if let (true, Some(mark)) = (button.on_disabled_hover_text(why_not).clicked(), middle) {
-                    entry::attempt(session, page.messages, "First axis mark", |draft| {
-                        Number::FirstAxisMark.set(draft, mark);
-                    });
-                }
-            });
-            entry::refused(ui, session, &[Number::FirstAxisMark]);
-            remark(ui, "Number the marks so that the same upright has the same number in all panels.");
-        }
-        Cameras::FixedMark => {
-            row(ui, "Fixed mark", "Number of a mark that is placed in every panel", |ui| {
-                entry::number(ui, session, Number::FixedMark, FIELD);
-            });
-            entry::refused(ui, session, &[Number::FixedMark]);
-            remark(ui, "Positions are measured from this mark, which must be placed in every panel.");
-        }
-    }
-}
-
 fn time(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     let Some(now) = calibration(session).map(|c| c.time.driven_by) else { return };
     let sources = [
-        (TimeSource::Interval, "Interval", Quantity::Interval),
-        (TimeSource::Speed, "Speed", Quantity::Speed),
-        (TimeSource::StrideTime, "Stride time", Quantity::StrideTime),
+        (TimeSource::Interval, "the interval", Quantity::Interval),
+        (TimeSource::Speed, "the speed", Quantity::Speed),
+        (TimeSource::StrideTime, "the stride time", Quantity::StrideTime),
     ];
-    row(ui, "Driven by", "What the fit uses; the others are compared with it", |ui| {
-        for (source, title, _) in sources {
-            if ui.selectable_label(now == source, title).clicked() && now != source {
-                change(session, page, "Source of time", |c| defaults::give_time(c, source));
-            }
-        }
-    });
+    let choices = sources.map(|(source, title, _)| (source, title, None));
+    let why = "What the fit uses; the others are compared with it";
+    let chosen = row(ui, "Driven by", why, |ui| choose(ui, "Time driven by", now, &choices, LIST));
+    if let Some(source) = chosen {
+        change(session, page, "Source of time", |c| defaults::give_time(c, source));
+    }
     for (source, title, quantity) in sources {
         if calibration(session).is_some_and(|c| quantity.of(c).is_some()) {
             known(ui, session, page, quantity);
-            if now != source && remove(ui, &title.to_lowercase(), false) {
-                change(session, page, &format!("Remove {}", title.to_lowercase()), |c| match source {
+            if now != source && remove(ui, title, false) {
+                change(session, page, &format!("Remove {title}"), |c| match source {
                     TimeSource::Interval => c.time.interval_s = None,
                     TimeSource::Speed => c.time.speed_m_s = None,
                     TimeSource::StrideTime => c.time.stride_time_s = None,
                 });
             }
-        } else if ui.button(format!("Add {}", title.to_lowercase())).clicked() {
-            change(session, page, title, |c| {
+        } else if ui.button(format!("Add {title}")).clicked() {
+            change(session, page, quantity.name(), |c| {
                 let driven_by = c.time.driven_by;
                 defaults::give_time(c, source);
                 c.time.driven_by = driven_by;

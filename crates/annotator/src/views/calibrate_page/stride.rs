@@ -14,7 +14,8 @@ pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_
     let time = session.draft().manifest.calibration.as_ref().map(|calibration| &calibration.time);
     let uneven = time.is_some_and(|time| time.intervals_s.is_some());
     let fixed = uneven.then_some("The manifest gives an interval for each gap of the present stride");
-    let titles: Vec<(u32, String)> = numbers.iter().map(|number| (*number, format!("panel {number}"))).collect();
+    let titles: Vec<(u32, String)> =
+        numbers.iter().map(|number| (*number, format!("panel {number}"))).collect();
     let mut chosen = span;
     for (name, end, is_first) in [("First", span.first, true), ("Last", span.last, false)] {
         let choices: Vec<(u32, &str, Option<&str>)> = titles
@@ -34,7 +35,9 @@ pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_
         }
     }
     if chosen != span {
-        entry::attempt(session, page.messages, "Panels of the stride", |draft| draft.annotation.stride = chosen);
+        entry::attempt(session, page.messages, "Panels of the stride", |draft| {
+            draft.annotation.stride = chosen;
+        });
     }
     closes(ui, session, page);
 }

@@ -20,12 +20,13 @@ pub(super) fn take_found(session: &mut Session, messages: &mut Messages) {
     let mut after = session.draft().clone();
     let taken = marks::take_uprights(&mut after, &found, first);
     let none = found.iter().filter(|(_, uprights)| uprights.is_empty()).count();
-    messages.note(format!("Uprights taken as marks in {taken} panels; none seen in {none}"));
+    let unseen = if none > 0 { format!("; none seen in {none}") } else { String::new() };
+    messages.note(format!("Uprights taken as marks in {taken} panels{unseen}; drag or delete wrong ones"));
     session.edit("Find uprights", |draft| *draft = after);
 }
 
-/// Both groups.
-pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
+/// What a click on the photograph does.
+pub(super) fn choose(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         for (tool, title) in
             [(Tool::Ground, "Ground line"), (Tool::Length, "Draw a known length"), (Tool::Marks, "Marks")]
@@ -37,6 +38,10 @@ pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_
         }
     });
     ui.separator();
+}
+
+/// Both groups.
+pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     group(ui, "Ground line", true, |ui| ground(ui, session, page));
     let open = session.calibrate.tool == Tool::Marks;
     group(ui, "Marks of this panel", true, |ui| marks_of_panel(ui, session, page, open));
@@ -47,27 +52,43 @@ fn small(ui: &mut Ui, title: &str, hover: &str, why_not: Option<&str>) -> bool {
     button.on_hover_text(hover).on_disabled_hover_text(why_not.unwrap_or_default()).clicked()
 }
 
+/// Why the photographs cannot be looked at now.
+fn busy(session: &Session) -> Option<&'static str> {
+    let missing = session.picture_is_missing().then_some("The photograph is not read yet");
+    missing.or(session.proposals.work().is_some().then_some("Something else is under way"))
+}
+
 fn ground(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
     let panel = session.panel;
     let drawn = |number: u32| session.draft().panel(number).is_some_and(|p| p.ground_px.is_some());
     let numbers = session.panel_numbers();
     let count = numbers.iter().filter(|number| drawn(**number)).count();
     let here = drawn(panel);
-    ui.label(format!("Drawn in {count} of {} panels, {}in this one", numbers.len(), if here { "" } else { "not " }));
+    ui.label(format!(
+        "Drawn in {count} of {} panels, {}in this one",
+        numbers.len(),
+        if here { "" } else { "not " }
+    ));
     let why_not = (!here).then_some("Draw the ground line of this panel first");
     let bare: Vec<u32> = marks::others(session.draft(), panel).into_iter().filter(|n| !drawn(*n)).collect();
     let in_row = marks::same_row(session.draft(), panel);
     let full = bare.is_empty().then_some("Every other panel has its ground line");
     let alone = in_row.is_empty().then_some("No other panel stands in the same row of the plate");
     ui.horizontal_wrapped(|ui| {
-        if small(ui, "Find the ground lines", "Where none is drawn, looked for in the photographs", None) {
+        if small(
+            ui,
+            "Find the ground lines",
+            "Where none is drawn, looked for in the photographs",
+            busy(session),
+        ) {
             page.commands.push(Command::FindGround);
         }
         if small(ui, "Copy to panels without", "At the same place of each panel", why_not.or(full)) {
             session.commit();
             session.edit("Copy the ground line", |d| marks::copy_ground(d, panel, &bare, false));
         }
-        let hover = "At the same place of all panels of this row of the plate, in place of what is drawn there";
+        let hover =
+            "At the same place of all panels of this row of the plate, in place of what is drawn there";
         if small(ui, "Copy to this row", hover, why_not.or(alone)) {
             session.commit();
             session.edit("Copy the ground line to the row", |d| marks::copy_ground(d, panel, &in_row, true));
@@ -105,8 +126,9 @@ fn buttons(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
         entry::attempt(session, page.messages, label, change);
     };
     ui.horizontal_wrapped(|ui| {
-        let working = session.proposals.work().is_some().then_some("Something else is under way");
-        let hover = "Upright lines of the wall become marks where they cross the ground line, in panels without";
+        let working = busy(session);
+        let hover =
+            "Upright lines of the wall become marks where they cross the ground line, in panels without";
         if small(ui, "Find uprights", hover, working) {
             let draft = session.document.draft().clone();
             session.proposals.find_uprights(&draft, &session.images, ui.ctx());
@@ -114,7 +136,8 @@ fn buttons(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
         if small(ui, "Number from the left", "From the first mark on, one by one", none) {
             edit(session, "Number the marks", &mut |draft| marks::renumber(draft, panel, first));
         }
-        let hover = "The same upright gets the same number in all panels, following the cameras from this panel on";
+        let hover =
+            "The same upright gets the same number in all panels, following the cameras from this panel on";
         if small(ui, "Number all panels alike", hover, few) {
             let mut count = 0;
             edit(session, "Number all panels alike", &mut |draft| count = marks::number_alike(draft, panel));
@@ -141,7 +164,10 @@ fn list(ui: &mut Ui, session: &mut Session) {
     let panel = session.panel;
     let marks = session.panel_annotation().map(|panel| panel.marks.clone()).unwrap_or_default();
     if marks.is_empty() {
-        remark(ui, "None yet. Marks are numbered points of known spacing: two ends of a length, uprights of a wall.");
+        remark(
+            ui,
+            "None yet. Marks are numbered points of known spacing: two ends of a length, uprights of a wall.",
+        );
         return;
     }
     let mut gone = None;
@@ -165,7 +191,9 @@ fn list(ui: &mut Ui, session: &mut Session) {
 /// Deletes a mark of the panel looked at.
 pub(super) fn delete(session: &mut Session, index: usize) {
     let panel = session.panel;
-    let Some(mark) = session.panel_annotation().and_then(|panel| panel.marks.get(index)).copied() else { return };
+    let Some(mark) = session.panel_annotation().and_then(|panel| panel.marks.get(index)).copied() else {
+        return;
+    };
     session.commit();
     session.edit(&format!("Delete mark {}", number(mark.mark)), |draft| {
         draft.panel_mut(panel).marks.remove(index);

@@ -27,16 +27,19 @@ pub(super) fn words(draft: &Draft) -> Option<[String; 2]> {
             "Draw it under the near hooves, find it, or copy it from another panel.".into(),
         ],
         CalibrationError::NoWithers => [
-            "The withers are placed in no panel with a ground line, but their height drives the scale.".into(),
+            "The withers are placed in no panel with a ground line, but their height drives the scale."
+                .into(),
             "Place the withers on the Pose page, or drive the scale by a known length.".into(),
         ],
         CalibrationError::NoStance => [
-            "No hoof is labelled stance in two neighbouring panels, so the parallax cannot be measured.".into(),
+            "No hoof is labelled stance in two neighbouring panels, so the parallax cannot be measured."
+                .into(),
             "Place hooves and label them, or give the distances or the ratio of the wall.".into(),
         ],
         CalibrationError::Contradiction(_) if panels_with_trunk(draft) < 2 => [
             "How far the animal goes is not known: its trunk is placed in fewer than two panels.".into(),
-            "Place withers, back, croup or dock on the Pose page; scale and ground can be drawn before.".into(),
+            "Place withers, back, croup or dock on the Pose page; scale and ground can be drawn before."
+                .into(),
         ],
         CalibrationError::Contradiction(reason) => {
             [format!("The numbers contradict each other: {reason}."), "Correct the one that is wrong.".into()]

@@ -113,7 +113,7 @@ fn distances(ui: &mut Ui, laws: &[&ContactLaw], [now, fitted]: [&[Measured]; 2])
         ui.weak("The points are shown when contacts and speed are known.");
         return;
     };
-    Grid::new("distances from laws").num_columns(4).striped(true).spacing([10.0, 2.0]).show(ui, |ui| {
+    Grid::new("distances from laws").num_columns(4).striped(true).spacing([8.0, 2.0]).show(ui, |ui| {
         ["", "law (s)", "bar (s)", "fit (s)"].into_iter().for_each(|title| drop(ui.weak(title)));
         ui.end_row();
         for kind in LawKind::ALL {

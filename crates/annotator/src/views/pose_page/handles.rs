@@ -70,7 +70,12 @@ fn show_points(ui: &mut Ui, canvas: &PanelCanvas, session: &mut Session) {
         let response = handle(ui, canvas, at, &colors::name(keypoint));
         draw_point(canvas, at, keypoint, placed, session.selected == Some(keypoint) || response.hovered());
         if response.clicked() {
-            session.selected = Some(keypoint);
+            // Near and off joints lie close together: a click places what is asked for, also beside another point.
+            let asked = session.selected.filter(|next| session.tool == Tool::Guided && keypoints.get(*next).is_none());
+            match asked {
+                Some(next) => place_at(canvas, session, next, &response),
+                None => session.selected = Some(keypoint),
+            }
         }
         if response.drag_started_by(egui::PointerButton::Primary)
             && let Some([x, y]) = response.interact_pointer_pos().map(|at| canvas.view.plate_from_screen(at))
@@ -87,15 +92,21 @@ fn show_points(ui: &mut Ui, canvas: &PanelCanvas, session: &mut Session) {
     place_by_click(ui, canvas, session);
 }
 
-/// A click on the photograph places the selected point; guided, the next one is selected.
+/// A click on the photograph places the selected point.
 fn place_by_click(ui: &Ui, canvas: &PanelCanvas, session: &mut Session) {
     if session.tool == Tool::Guided && session.selected.is_none() {
         session.select_unplaced();
     }
     let clicked = canvas.response.clicked_by(egui::PointerButton::Primary);
     let alt = ui.input(|input| input.modifiers.alt);
-    let at = canvas.response.interact_pointer_pos().filter(|_| clicked && !alt);
-    let (Some(at), Some(keypoint)) = (at, session.selected) else { return };
+    if let Some(keypoint) = session.selected.filter(|_| clicked && !alt) {
+        place_at(canvas, session, keypoint, &canvas.response);
+    }
+}
+
+/// Places a point where something was clicked; guided, the next one is selected.
+fn place_at(canvas: &PanelCanvas, session: &mut Session, keypoint: Keypoint, clicked: &Response) {
+    let Some(at) = clicked.interact_pointer_pos() else { return };
     let (at_px, panel, state) = (canvas.view.plate_from_screen(at), session.panel, session.next_state);
     let label = format!("Place {}", colors::name(keypoint));
     session.edit(&label, |draft| points::place(draft, panel, keypoint, at_px, state));

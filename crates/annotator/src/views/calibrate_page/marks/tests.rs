@@ -32,7 +32,8 @@ fn copied_marks_keep_scale_and_positions_where_cameras_stand_in_a_row() {
     let targets = others(&draft, 1);
     targets.iter().for_each(|panel| draft.panel_mut(*panel).marks.clear());
     assert_eq!(copy_marks(&mut draft, 1, &targets), targets.len());
-    let calibrated = |draft: &Draft| muybridge_capture::calibrate(&draft.manifest, &draft.annotation).unwrap();
+    let calibrated =
+        |draft: &Draft| muybridge_capture::calibrate(&draft.manifest, &draft.annotation).unwrap();
     let (copied, known) = (calibrated(&draft), calibrated(&truth));
     // The panels were printed a pixel or so off their places, 2 cm of a stride of 2.5 m.
     assert!((copied.speed_m_s.value / known.speed_m_s.value - 1.0).abs() < 0.02);
@@ -50,7 +51,8 @@ fn the_ground_goes_to_the_same_place_of_other_panels_and_replaces_only_when_aske
     assert_eq!(row, [2, 3, 4, 5, 6]);
     copy_ground(&mut draft, 1, &row, false);
     assert_eq!(draft.panel(3), truth.panel(3));
-    let (copied, known) = (draft.panel(2).unwrap().ground_px.unwrap(), truth.panel(2).unwrap().ground_px.unwrap());
+    let (copied, known) =
+        (draft.panel(2).unwrap().ground_px.unwrap(), truth.panel(2).unwrap().ground_px.unwrap());
     for (a, b) in copied.iter().zip(known) {
         assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 2.0, "{a:?} {b:?}");
     }

@@ -1,0 +1,141 @@
+//! Commands that propose points for a panel: tracked, interpolated, fitted, copied. None of them moves a point that a person
+//! has placed.
+
+use egui::Context;
+use muybridge_capture::{Draft, Keypoint, KeypointState, PanelAnnotation, Placed, PlacedBy};
+use muybridge_fitting::posing::{SequencePanel, interpolate};
+
+use crate::session::{Page, Session};
+
+/// Fewest points of a panel from which another is tracked.
+const LEAST_KNOWN: usize = 6;
+/// Panels looked back to for tracking: a turn takes two.
+const LOOKED_BACK: usize = 2;
+
+impl Session {
+    /// Panels from which this one can be tracked, on each side the one beside it last, at most two: both sides where they are
+    /// equally well known, else the better known one.
+    fn known_beside(&self) -> Vec<Vec<u32>> {
+        let numbers = self.panel_numbers();
+        let Some(at) = numbers.iter().position(|number| *number == self.panel) else { return Vec::new() };
+        let is_known = |panel: &u32| {
+            let placed =
+                |p: &PanelAnnotation| p.keypoints.iter().filter(|(_, p)| p.place().is_some()).count();
+            self.draft().panel(*panel).is_some_and(|p| placed(p) >= LEAST_KNOWN)
+        };
+        let beside = |way: Vec<u32>| {
+            let mut known: Vec<u32> = way.into_iter().take(LOOKED_BACK).take_while(is_known).collect();
+            known.reverse();
+            known
+        };
+        let mut sides =
+            vec![beside(numbers[..at].iter().rev().copied().collect()), beside(numbers[at + 1..].to_vec())];
+        let most = sides.iter().map(Vec::len).max().unwrap_or(0).max(1);
+        sides.retain(|side| side.len() == most);
+        sides
+    }
+
+    /// Why nothing can be tracked into this panel.
+    pub fn why_not_track(&self) -> Option<&'static str> {
+        if self.picture_is_missing() {
+            Some("The photograph is not read yet")
+        } else if self.proposals.work().is_some() {
+            Some("Something else is being worked out")
+        } else {
+            self.known_beside().is_empty().then_some("Neither the panel before nor the one after has points")
+        }
+    }
+
+    /// Why nothing can be interpolated into this panel.
+    pub fn why_not_interpolate(&self) -> Option<&'static str> {
+        let placed = |p: &&PanelAnnotation| {
+            p.panel != self.panel
+                && p.keypoints.iter().filter(|(_, p)| p.place().is_some()).count() >= LEAST_KNOWN
+        };
+        let others = self.draft().annotation.panels.iter().filter(placed).count();
+        (others < 2).then_some("Two other panels must have points")
+    }
+
+    /// Why no pose can be copied into this panel.
+    pub fn why_not_copy(&self) -> Option<&'static str> {
+        let before = self.panel_after(-1).and_then(|panel| self.draft().panel(panel));
+        before.is_none_or(|p| p.keypoints.iter().next().is_none()).then_some("The panel before has no points")
+    }
+
+    pub(super) fn propose_tracked(&mut self, context: &Context) {
+        let sides = self.known_beside();
+        let documents = (self.document.draft(), &self.derived);
+        self.proposals.track(documents, &sides, self.panel, &self.images, context);
+    }
+
+    /// The panels of the stride in order of time, as interpolation wants them.
+    fn sequence(&self) -> Vec<SequencePanel> {
+        let draft = self.document.draft();
+        let panel = |panel: u32| {
+            let annotation = draft.panel(panel).cloned();
+            let annotation = annotation.unwrap_or_else(|| PanelAnnotation::empty(panel));
+            let camera = *self.derived.cameras.get(&panel)?;
+            let (keypoints, contacts) = (annotation.keypoints, annotation.contacts);
+            Some(SequencePanel { panel, camera, keypoints, contacts })
+        };
+        self.panel_numbers().into_iter().filter_map(panel).collect()
+    }
+
+    pub(super) fn propose_interpolated(&mut self) {
+        let period = self.derived.footfalls.as_ref().map(|footfalls| footfalls.clock.closes_after_panels());
+        let (skeleton, lengths) = (self.derived.skeleton().clone(), self.derived.lengths);
+        let found = interpolate(&skeleton, self.facing(), &lengths, &self.sequence(), self.panel, period);
+        let points: Vec<(Keypoint, Placed)> =
+            found.iter().map(|(keypoint, placed)| (keypoint, *placed)).collect();
+        self.take_proposed("Propose by interpolation", self.panel, &points);
+    }
+
+    pub(super) fn propose_fitted(&mut self) {
+        let Some(fitted) = self.fit.latest().cloned() else { return };
+        let (fit, panel) = (&fitted.plate.fit, self.panel);
+        let slot = fit.problem.order.iter().position(|i| fit.observation.panels[*i].camera.panel == panel);
+        let Some(slot) = slot else { return };
+        let kinematics = &fit.kinematics()[slot];
+        let points: Vec<(Keypoint, Placed)> = Keypoint::all()
+            .map(|keypoint| {
+                let known = self.panel_annotation().and_then(|p| p.keypoints.get(keypoint));
+                let state = known.map_or(KeypointState::Visible, |placed| placed.state);
+                let state = if state == KeypointState::Absent { KeypointState::Occluded } else { state };
+                let at_px = Some(fit.place_px(slot, kinematics, keypoint));
+                (keypoint, Placed { at_px, state, by: PlacedBy::Fitted })
+            })
+            .collect();
+        self.take_proposed("Propose from the fit", panel, &points);
+    }
+
+    pub(super) fn copy_previous(&mut self) {
+        let (Some(from), to) = (self.panel_after(-1), self.panel) else { return };
+        let Some(place) = self.derived.registration(self.document.draft(), from, to) else { return };
+        let Some(source) = self.document.draft().panel(from) else { return };
+        let points: Vec<(Keypoint, Placed)> = source
+            .keypoints
+            .iter()
+            .map(|(keypoint, placed)| {
+                (keypoint, Placed { at_px: placed.at_px.map(&place), by: PlacedBy::Interpolated, ..*placed })
+            })
+            .collect();
+        self.take_proposed("Copy the previous pose", to, &points);
+    }
+
+    /// Takes points over, but never in the place of one that a person has put there; places that are none are left out.
+    pub(super) fn take_proposed(&mut self, label: &str, panel: u32, points: &[(Keypoint, Placed)]) {
+        self.edit(label, |draft| take_over(draft, panel, points));
+        self.page = Page::Pose;
+    }
+}
+
+fn take_over(draft: &mut Draft, panel: u32, points: &[(Keypoint, Placed)]) {
+    let keypoints = &mut draft.panel_mut(panel).keypoints;
+    for (keypoint, placed) in points {
+        let by_hand = keypoints.get(*keypoint).is_some_and(|placed| placed.by == PlacedBy::Hand);
+        let finite = placed.at_px.iter().flatten().all(|v| v.is_finite());
+        if !by_hand && finite {
+            keypoints.insert(*keypoint, *placed);
+        }
+    }
+}
