@@ -130,7 +130,7 @@ fn journal(journals: &Path) -> Option<PathBuf> {
 /// One sequence; whether the kill hit a save.
 fn sequence(seed: u64) -> bool {
     // On a disk the kill often meets a program that waits for it; in memory, one that computes or writes.
-    let killed = if seed % 2 == 0 { specimen() } else { specimen_in_memory() };
+    let killed = if seed.is_multiple_of(2) { specimen() } else { specimen_in_memory() };
     let whole = specimen_in_memory();
     let said = run_and_kill(seed, killed.path());
     let mut work = Work::begin(seed, whole.path(), None);

@@ -159,13 +159,14 @@ class Person:
         marks = [mark["at_px"] for mark in self.truth["panels"][0]["marks"]]
         program.click("Draw a known length")
         program.drag(screen(marks[0]), screen(marks[1]))
-        program.type("27\n")
-        program.settle()
-        self.check(program.find("27", role="textInput"), "a known length is drawn and typed")
+        program.type("0.6858")
+        program.key("Return")
         self.photograph("known-length")
-        while program.find("Mark 0") or program.find("Mark 1"):
-            program.key("ctrl+z")
-            program.settle()
+        typed = program.see("Known length", role="textInput").value
+        self.check(typed == "0.6858", f"a known length is drawn, and {typed} m is typed")
+        program.key("ctrl+z", "ctrl+z")
+        program.settle()
+        self.check(not program.find("Mark 1"), "typing and drawing are taken back")
 
     def type_numbers(self, numbers):
         """Types into fields at the right, wherever they are."""
@@ -181,7 +182,8 @@ class Person:
                 widget = program.scroll_to(name, inside, role="textInput")
                 program.click(widget)
                 program.key("ctrl+a")
-                program.type(text + "\n")
+                program.type(text)
+                program.key("Return")
 
     # Pose page.
 

@@ -207,9 +207,14 @@ impl Annotator {
 
     fn take_dropped_files(&mut self, context: &Context) {
         let dropped = context.input(|input| input.raw.dropped_files.clone());
-        for file in dropped {
-            self.leave(context, After::Open(file.path().to_path_buf()));
+        let Some(last) = dropped.last().map(|file| file.path().to_path_buf()) else { return };
+        if dropped.len() > 1 {
+            let (count, name) = (dropped.len(), last.display());
+            self.messages.trouble(format!(
+                "{count} files were dropped, and only {name} is opened; put the frames of a plate into a folder and drop that"
+            ));
         }
+        self.leave(context, After::Open(last));
     }
 
     /// Starts to open a path; the plate that is open stays until the other one is there.
@@ -291,7 +296,8 @@ fn plate_ui(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
             Page::Play => views::play_page::inspector(ui, session, page),
         });
     });
-    CentralPanel::no_frame().show(ui, |ui| match (session.shown.sheet, session.page) {
+    let sheet = session.shown.sheet && session.panel_place().is_some();
+    CentralPanel::no_frame().show(ui, |ui| match (sheet, session.page) {
         (true, _) => views::sheet::show(ui, session, page),
         (_, Page::Plate) => views::plate_page::canvas(ui, session, page),
         (_, Page::Calibrate) => views::calibrate_page::canvas(ui, session, page),

@@ -271,6 +271,15 @@ impl Session {
         (count > 0).then(|| numbers[(at + steps).rem_euclid(count) as usize])
     }
 
+    /// The panel so many steps on in the stride, around its end; around the plate for a panel that is not of the stride.
+    pub fn neighbour(&self, steps: i64) -> Option<u32> {
+        let stride = self.stride_numbers();
+        let Some(at) = stride.iter().position(|number| *number == self.panel) else {
+            return self.panel_after(steps);
+        };
+        Some(stride[(at as i64 + steps).rem_euclid(stride.len() as i64) as usize])
+    }
+
     /// Looks at another panel.
     pub fn go_to(&mut self, panel: u32) {
         self.commit();

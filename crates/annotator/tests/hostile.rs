@@ -143,6 +143,9 @@ fn a_hostile_file_gives_a_message_and_leaves_the_open_plate_alone() {
         match &answer {
             Answer::Message(text) => {
                 refused += 1;
+                if std::env::var_os("SHOW_MESSAGES").is_some() {
+                    println!("{}", text.chars().take(300).collect::<String>());
+                }
                 assert!(!text.contains("stopped unexpectedly"), "{}: a panic: {text}", path.display());
                 assert!(
                     text.len() > 20 && text.contains(": "),
@@ -179,4 +182,21 @@ fn odd_but_valid_plates_are_shown_on_every_page() {
         window.run_steps(2);
         assert!(started.elapsed() < LONGEST, "{}: {:?}", path.display(), started.elapsed());
     }
+}
+
+#[test]
+fn of_several_files_dropped_at_once_one_is_opened_and_the_window_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let open = Specimen::read().unpack(&folder.path().join("open"), "open-plate");
+    let other = Specimen::read().unpack(&folder.path().join("other"), "other-plate");
+    let mut window = window(&folder.path().join("state"), &open);
+    for path in [&open, &open, &other] {
+        window.input_mut().dropped_files.push(Arc::new(File(path.clone())));
+    }
+    window.step();
+    let text = program(&mut window).messages.all().last().unwrap().text.clone();
+    assert!(text.contains("3 files") && text.contains("other-plate.json"), "{text}");
+    let context = window.ctx.clone();
+    program(&mut window).wait_until_open(&context);
+    assert_eq!(program(&mut window).session.as_ref().unwrap().document.annotation_path(), other);
 }

@@ -160,6 +160,9 @@ fn session_why_not(session: &Session, command: Command) -> Option<&'static str> 
 fn run_on_view(session: &mut Session, command: Command) -> bool {
     use Command as C;
     let shown = &mut session.shown;
+    if matches!(command, C::PagePlate | C::PageCalibrate | C::PagePose | C::PageGait) {
+        session.play.is_playing = false;
+    }
     match command {
         C::PagePlate => session.page = Page::Plate,
         C::PageCalibrate => session.page = Page::Calibrate,

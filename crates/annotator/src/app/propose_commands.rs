@@ -58,7 +58,7 @@ impl Session {
 
     /// Why no pose can be copied into this panel.
     pub fn why_not_copy(&self) -> Option<&'static str> {
-        let before = self.panel_after(-1).and_then(|panel| self.draft().panel(panel));
+        let before = self.neighbour(-1).and_then(|panel| self.draft().panel(panel));
         before.is_none_or(|p| p.keypoints.iter().next().is_none()).then_some("The panel before has no points")
     }
 
@@ -109,7 +109,7 @@ impl Session {
     }
 
     pub(super) fn copy_previous(&mut self) {
-        let (Some(from), to) = (self.panel_after(-1), self.panel) else { return };
+        let (Some(from), to) = (self.neighbour(-1), self.panel) else { return };
         let Some(place) = self.derived.registration(self.document.draft(), from, to) else { return };
         let Some(source) = self.document.draft().panel(from) else { return };
         let points: Vec<(Keypoint, Placed)> = source

@@ -17,7 +17,7 @@ pub(super) fn draw_behind(canvas: &PanelCanvas, session: &mut Session) {
     if !session.shown.ghost_photograph || session.second_pass.is_some() {
         return;
     }
-    let Some(from) = session.panel_after(-1).filter(|from| *from != session.panel) else { return };
+    let Some(from) = session.neighbour(-1).filter(|from| *from != session.panel) else { return };
     let Some(place) = session.derived.registration(session.draft(), from, session.panel) else { return };
     let Some(panel) = session.place_of(from).cloned() else { return };
     let look = Look { opacity: GHOST_OPACITY, ..Look::default() };
@@ -75,7 +75,7 @@ fn draw_edges(
 }
 
 fn draw_ghost(canvas: &PanelCanvas, session: &Session, steps: i64, color: Color32) {
-    let Some(from) = session.panel_after(steps).filter(|from| *from != session.panel) else { return };
+    let Some(from) = session.neighbour(steps).filter(|from| *from != session.panel) else { return };
     let Some(place) = session.derived.registration(session.draft(), from, session.panel) else { return };
     let Some(panel) = session.draft().panel(from) else { return };
     let screen = |at_px| canvas.view.screen_from_plate(place(at_px));
