@@ -19,6 +19,8 @@ import time
 SCREEN = (1360, 880)
 # Flag of a widget that is disabled, in AccessKit's order of flags.
 DISABLED = 1 << 9
+# Nothing that is scrolled is seen above this, points.
+TOP = 110
 # The longest that anything is waited for, s.
 PATIENCE = 30.0
 # Between two looks, and between the parts of a gesture, s.
@@ -255,9 +257,9 @@ class Program:
         for _ in range(30):
             widget = self.see(name, **where)
             y = widget.middle()[1]
-            if 110 < y < inside[1]:
+            if TOP < y < inside[1]:
                 return widget
-            self.scroll([inside[0], 300], 2 if y > 110 else -2)
+            self.scroll([inside[0], (TOP + inside[1]) / 2], 2 if y > TOP else -2)
         raise Failure(f"“{name}” cannot be scrolled to")
 
     def cpu_s(self):

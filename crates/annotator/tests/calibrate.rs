@@ -12,8 +12,8 @@ use egui::{Context, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use muybridge_capture::{
-    ANNOTATION_SCHEMA, Annotation, BodyPoint, Keypoint, MANIFEST_SCHEMA, Manifest, calibrate, read_json,
-    write_json,
+    ANNOTATION_SCHEMA, Annotation, BodyPoint, Keypoint, MANIFEST_SCHEMA, Manifest, PanelAnnotation,
+    calibrate, read_json, write_json,
 };
 
 /// Precision of a line drawn by hand over the specimen, whose metre is 64 px long: half a pixel at each end.
@@ -165,15 +165,9 @@ fn place_trunk(session: &mut Session) {
     });
 }
 
-#[test]
-fn a_drawn_length_an_interval_and_a_ground_line_calibrate_the_plate() {
-    let manifest: Manifest = read_json(&specimens().join("specimen-trot.json"), MANIFEST_SCHEMA).unwrap();
-    let truth: Annotation =
-        read_json(&specimens().join("annotations/specimen-trot.json"), ANNOTATION_SCHEMA).unwrap();
-    let known = calibrate(&manifest, &truth).unwrap();
-    let mut person = Person::new();
+/// What a person draws on the first panel, and types.
+fn draw_and_type(person: &mut Person, first: &PanelAnnotation) {
     assert!(person.harness.query_all_by_label_contains("Nobody has said yet").next().is_some());
-    let first = &truth.panels[0];
     for end in first.ground_px.unwrap() {
         person.click_on(end, PointerButton::Primary);
     }
@@ -222,6 +216,11 @@ fn a_drawn_length_an_interval_and_a_ground_line_calibrate_the_plate() {
     assert!((axis.parse::<f64>().unwrap() - 1.0).abs() < 0.02, "{axis}");
     person.type_into("Interval", "0.058728");
     person.enter();
+    copy_to_all(person);
+}
+
+/// Ground line and marks to all other panels.
+fn copy_to_all(person: &mut Person) {
     let copies: Vec<_> = person
         .harness
         .get_all_by_role_and_label(Role::Button, "Copy to panels without")
@@ -235,6 +234,16 @@ fn a_drawn_length_an_interval_and_a_ground_line_calibrate_the_plate() {
         person.button(at, PointerButton::Primary, false);
         person.harness.run_steps(2);
     }
+}
+
+#[test]
+fn a_drawn_length_an_interval_and_a_ground_line_calibrate_the_plate() {
+    let manifest: Manifest = read_json(&specimens().join("specimen-trot.json"), MANIFEST_SCHEMA).unwrap();
+    let truth: Annotation =
+        read_json(&specimens().join("annotations/specimen-trot.json"), ANNOTATION_SCHEMA).unwrap();
+    let known = calibrate(&manifest, &truth).unwrap();
+    let mut person = Person::new();
+    draw_and_type(&mut person, &truth.panels[0]);
     let derived = person.session().derived.calibration.as_ref().unwrap();
     let close = |a: f64, b: f64, limit: f64| (a / b - 1.0).abs() < limit;
     assert!(close(derived.stride[0].px_per_m, known.stride[0].px_per_m, DRAWN));

@@ -25,6 +25,12 @@ fn picture(format: ImageFormat) -> Vec<u8> {
     bytes.into_inner()
 }
 
+/// The check of a chunk, so that a claimed size is believed (CRC-32).
+fn png_check(chunk: &[u8]) -> u32 {
+    let bit = |crc: u32, _: u32| (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg());
+    !chunk.iter().fold(!0, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), bit))
+}
+
 pub(super) fn pictures(folder: &Path) -> Vec<Dropped> {
     std::fs::create_dir_all(folder).unwrap();
     let mut files = Vec::new();
@@ -58,6 +64,8 @@ pub(super) fn pictures(folder: &Path) -> Vec<Dropped> {
         let mut claiming = picture(ImageFormat::Png);
         claiming[16..20].copy_from_slice(&u32::to_be_bytes(size[0]));
         claiming[20..24].copy_from_slice(&u32::to_be_bytes(size[1]));
+        let check = png_check(&claiming[12..29]);
+        claiming[29..33].copy_from_slice(&check.to_be_bytes());
         add(format!("{name}.png"), &claiming, false);
     }
     let mut ring = picture(ImageFormat::Tiff);

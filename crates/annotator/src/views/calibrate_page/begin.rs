@@ -57,19 +57,23 @@ pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_
     ui.add_space(6.0);
     let button = Button::new(RichText::new("Begin calibration").strong().size(15.0));
     if ui.add_sized(vec2(ui.available_width(), 32.0), button).clicked() {
-        let position = kinds.cameras.position(session.draft());
-        let time = kinds.time.unwrap_or(TimeSource::Interval);
-        let begun = defaults::calibration(kinds.scale, position, time);
-        entry::attempt(session, page.messages, "Begin calibration", |draft| {
-            draft.manifest.calibration = Some(begun);
-        });
-        let unmarked = session.panel_annotation().is_none_or(|panel| panel.marks.len() < 2);
-        if kinds.scale == ScaleSource::KnownLength && unmarked {
-            session.calibrate.tool = Tool::Length;
-        }
+        begin(session, page, kinds);
     }
     ui.add_space(6.0);
     ui.separator();
+}
+
+fn begin(session: &mut Session, page: &mut PageContext<'_>, kinds: Kinds) {
+    let position = kinds.cameras.position(session.draft());
+    let time = kinds.time.unwrap_or(TimeSource::Interval);
+    let begun = defaults::calibration(kinds.scale, position, time);
+    entry::attempt(session, page.messages, "Begin calibration", |draft| {
+        draft.manifest.calibration = Some(begun);
+    });
+    let unmarked = session.panel_annotation().is_none_or(|panel| panel.marks.len() < 2);
+    if kinds.scale == ScaleSource::KnownLength && unmarked {
+        session.calibrate.tool = Tool::Length;
+    }
 }
 
 fn options<T: Copy + PartialEq>(ui: &mut Ui, question: &str, now: &mut T, choices: &[(T, &str)]) {

@@ -1,4 +1,4 @@
-"""What the scripted person does in the annotator, step by step; used by `person.py`."""
+"""What the scripted person does in the annotator, step by step; first part: from a picture to an annotation."""
 
 import math
 import re
@@ -20,7 +20,7 @@ PANELS = 12
 IDLE_S, MESSAGES_S = 10.0, 8.0
 
 
-class Person:
+class Maker:
     """A person at work on one plate, who sees in it what `truth` says."""
 
     def __init__(self, screen, path, folder, out, plate, truth):
