@@ -118,7 +118,7 @@ class Person(Maker):
         """DeepLabCut and COCO, by the window."""
         program = self.start(self.annotation_path)
         folder = self.annotation_path.parent / f"{self.plate}-export"
-        for shown, wanted, ending in [(None, "DeepLabCut", ".csv"), ("DeepLabCut", "COCO", ".json")]:
+        for shown, wanted, ending in [(None, "deeplabcut", ".csv"), ("deeplabcut", "coco", ".json")]:
             program.key("ctrl+e")
             program.see("Folder", role="textInput")
             if shown:

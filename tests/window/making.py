@@ -14,6 +14,8 @@ FILLED = 0.94
 BY_HAND = 2
 # A click hits what it is meant for to half a point of the screen, which is less than this on the plate, px.
 HIT_PX = 1.0
+# Lanes of the footfall bar, as their keys 1 to 4.
+LANES = ("near_fore", "off_fore", "near_hind", "off_hind")
 # Panels of a plate, here.
 PANELS = 12
 # Idle is measured for so long, s; messages are gone after this, s.
@@ -192,21 +194,26 @@ class Maker:
         program = self.program
         program.key("F3")
         for panel in range(1, BY_HAND + 1):
-            screen = self.screen_from_plate(panel)
+            screen, truth = self.screen_from_plate(panel), self.truth_of(panel)
             started = time.monotonic()
-            for name, point in self.truth_of(panel).items():
-                if point["state"] == "absent":
-                    program.key("x")
-                    continue
-                if point["state"] == "occluded":
-                    program.key("o")
-                program.click(screen(point["at_px"]))
-            print(f"  panel {panel}: {len(self.truth_of(panel))} points in {time.monotonic() - started:.0f} s")
+            for name in self.drawn_order(truth):
+                state = truth[name]["state"]
+                if state != "visible":
+                    program.key("x" if state == "absent" else "o")
+                if state != "absent":
+                    program.click(screen(truth[name]["at_px"]))
+            print(f"  panel {panel}: {len(truth)} points in {time.monotonic() - started:.0f} s")
             self.photograph(f"panel-{panel}")
             program.key("period")
         self.save()
         for panel in range(1, BY_HAND + 1):
             self.compare(panel, HIT_PX, "placed by hand")
+
+    def drawn_order(self, truth):
+        """Names of the points from the top to the bottom of the list at the right: the order they are asked in."""
+        edge = self.program.see("Photograph", role="canvas").bounds[2]
+        listed = [w.name.replace(" ", "_") for w in self.program.widgets() if w.role == "button" and w.bounds[0] > edge]
+        return [name for name in listed if name in truth]
 
     def truth_of(self, panel):
         """What the person sees in a panel."""
@@ -215,7 +222,7 @@ class Maker:
     def compare(self, panel, most_px, how):
         """Points on disk against what the person saw."""
         placed, truth = self.placed(panel), self.truth_of(panel)
-        self.check(list(placed) == list(truth), f"panel {panel} has {len(placed)} points")
+        self.check(set(placed) == set(truth), f"panel {panel} has {len(placed)} points")
         pairs = [(placed[name]["at_px"], truth[name]["at_px"]) for name in placed if placed[name].get("at_px")]
         apart = [math.dist(a, b) for a, b in pairs if b]
         median = statistics.median(apart) if apart else math.inf
@@ -288,26 +295,35 @@ class Maker:
         program.key("Tab")
         for _ in range(PANELS):
             program.key("period")
-        self.check(program.find(f"Panel {BY_HAND} of {PANELS}"), "twelve steps lead round the stride")
+        self.check(program.find(f"Panel 3 of {PANELS}"), "twelve steps lead round the stride")
 
     # Footfalls.
 
+    def draw_stance(self, lane, panels):
+        """Drags over the panels of one lane in which the hoof is down."""
+        x0, y0, x1, y1 = self.program.see(f"Footfalls {lane}").bounds
+        width, y = (x1 - x0) / PANELS, (y0 + y1) / 2
+        first, last = min(panels), max(panels)
+        if last - first + 1 == len(panels):
+            self.program.drag([x0 + (first - 0.9) * width, y], [x0 + (last - 0.1) * width, y])
+
     def contacts(self):
-        """Stances are drawn as the person sees them, the rest is clicked; then an edge is dragged."""
+        """One lane's stance is drawn, the rest is told by keys panel by panel; then an edge is dragged."""
         program = self.program
         seen = {p["panel"]: p["contacts"] for p in self.truth["panels"]}
-        for lane in ("near_fore", "off_fore", "near_hind", "off_hind"):
-            name = f"Footfalls {lane.replace('_', ' ')}"
-            for panel in range(1, PANELS + 1):
-                x0, y0, x1, y1 = program.see(name).bounds
-                width = (x1 - x0) / PANELS
-                clicks = {"unknown": 0, "stance": 1, "swing": 2}[seen[panel][lane]]
-                for _ in range(clicks):
-                    program.click([x0 + (panel - 0.4) * width, (y0 + y1) / 2])
+        self.draw_stance("near fore", [panel for panel in seen if seen[panel]["near_fore"] == "stance"])
+        program.click("Panel 1", role="button")
+        for panel in seen:
+            drawn = {"near_fore": "stance"} if seen[panel]["near_fore"] == "stance" else {}
+            for key, lane in enumerate(LANES, 1):
+                wanted, now = seen[panel][lane], drawn.get(lane, "unknown")
+                if wanted != now:
+                    program.key(*[str(key)] * ["unknown", "stance", "swing"].index(wanted))
+            program.key("period")
         self.photograph("contacts")
         self.save()
         now = {p["panel"]: p["contacts"] for p in self.annotation()["panels"]}
-        self.check(now == seen, "every label is as clicked")
+        self.check(now == seen, "every label is as told")
         edge = next(w for w in program.widgets() if " lift-off " in w.name and 300 < w.middle()[0] < 900)
         at = edge.middle()
         program.drag(at, [at[0] + 12, at[1]])

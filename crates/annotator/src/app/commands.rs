@@ -54,6 +54,10 @@ impl Annotator {
             self.messages.trouble(format!("{}: {why_not}", command.title()));
             return;
         }
+        // A field that is being typed in may not be there any more after a change of page.
+        if let Some(session) = &mut self.session {
+            session.commit();
+        }
         if self.run_on_program(context, command) {
             return;
         }

@@ -88,11 +88,11 @@ impl Annotator {
     fn take_recovery(&mut self, context: &Context, mut waiting: Vec<Waiting>, answer: Answer) {
         match answer {
             Answer::Recover(chosen) => match Document::recover(&chosen.journal_path) {
-                Ok(document) => return self.show_document(context, document),
+                Ok(document) => self.show_document(context, document),
                 Err(error) => self.messages.trouble(error.to_string()),
             },
             Answer::OpenSaved(chosen) => match discard(&chosen.journal_path) {
-                Ok(()) => return self.open(context, &chosen.annotation_path),
+                Ok(()) => self.open(context, &chosen.annotation_path),
                 Err(error) => self.messages.trouble(error.to_string()),
             },
             Answer::Discard(chosen) => {

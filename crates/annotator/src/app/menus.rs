@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Button, RichText, Ui};
 
-use super::{Annotator, Command};
+use super::{Annotator, Command, Session};
 use crate::command::Menu;
 use crate::toast::trouble_color;
 
@@ -85,7 +85,7 @@ impl Annotator {
                 ui.label(text.color(trouble_color(ui.visuals().dark_mode))).on_hover_text(fault);
             }
         }
-        let session_work = self.session.as_ref().and_then(|session| session.work_under_way());
+        let session_work = self.session.as_ref().and_then(Session::work_under_way);
         let opening = self.opening.as_ref().map(|job| job.what.clone());
         if let Some(work) = opening.or(session_work) {
             ui.spinner();

@@ -1,7 +1,7 @@
 //! Commands that change the open plate's documents.
 
 use egui::Context;
-use muybridge_capture::{Draft, Facing, Keypoint, KeypointState, Placed, PlacedBy, StanceLabel};
+use muybridge_capture::{Facing, Keypoint, KeypointState, Placed, PlacedBy, StanceLabel};
 use muybridge_core::Pair;
 use muybridge_fitting::footfalls::{LANES, with_label};
 use muybridge_imaging::track::Proposal;
@@ -21,7 +21,6 @@ impl Session {
     /// Does a command of the open plate.
     pub(super) fn run(&mut self, context: &Context, command: Command, messages: &mut Messages) {
         use Command as C;
-        self.commit();
         match command {
             C::Undo | C::Redo => self.step_history(command, messages),
             C::Visible => self.set_state(KeypointState::Visible),
@@ -115,7 +114,7 @@ impl Session {
         let by = known.map_or(PlacedBy::Hand, |placed| placed.by);
         let label = format!("{} is {}", crate::colors::name(keypoint), format!("{state:?}").to_lowercase());
         self.edit(&label, |draft| {
-            draft.panel_mut(panel).keypoints.insert(keypoint, Placed { at_px, state, by })
+            draft.panel_mut(panel).keypoints.insert(keypoint, Placed { at_px, state, by });
         });
         if state == KeypointState::Absent && self.tool == Tool::Guided {
             self.select_unplaced();

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, CursorIcon, FontId, Rect, Response, Sense, Stroke, U
 use muybridge_capture::{Annotation, Event, NearOff, StanceLabel};
 use muybridge_core::Pair;
 use muybridge_fitting::footfalls::{
-    EdgeSource, Footfalls, LANES, ShownSpan, StrideClock, with_edge, with_label, with_span, without_span,
+    EdgeSource, Footfalls, LANES, ShownSpan, StrideClock, leg_name, with_edge, with_label, with_span, without_span,
 };
 
 use crate::app::PageContext;
@@ -38,15 +38,6 @@ pub enum BarDrag {
     },
 }
 
-fn lane_name((side, pair): (NearOff, Pair)) -> &'static str {
-    match (side, pair) {
-        (NearOff::Near, Pair::Fore) => "near fore",
-        (NearOff::Off, Pair::Fore) => "off fore",
-        (NearOff::Near, Pair::Hind) => "near hind",
-        (NearOff::Off, Pair::Hind) => "off hind",
-    }
-}
-
 /// The bar.
 pub fn show(ui: &mut Ui, session: &mut Session, columns: &Columns, _page: &mut PageContext<'_>) {
     let Some(footfalls) = session.derived.footfalls.clone() else { return };
@@ -59,7 +50,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, columns: &Columns, _page: &mut P
         );
         let name_at = pos2(rect.left() + NAMES - 8.0, rect.center().y);
         let color = if ui.visuals().dark_mode { colors::side(leg.0) } else { ui.visuals().text_color() };
-        ui.painter().text(name_at, Align2::RIGHT_CENTER, lane_name(leg), FontId::proportional(12.0), color);
+        ui.painter().text(name_at, Align2::RIGHT_CENTER, leg_name(leg.0, leg.1), FontId::proportional(12.0), color);
         show_lane(ui, session, &footfalls, leg, lane, columns, first);
     }
     ui.add_space(4.0);
@@ -76,7 +67,7 @@ fn show_lane(
 ) {
     let painter = ui.painter_at(lane.expand(1.0));
     painter.rect_filled(lane.shrink2(vec2(0.0, 1.0)), 2.0, ui.visuals().extreme_bg_color);
-    let name = format!("Footfalls {}", lane_name(leg));
+    let name = format!("Footfalls {}", leg_name(leg.0, leg.1));
     let response = ui.interact(lane, ui.scope_id().with(&name), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Slider, true, &name));
     draw_columns(&painter, session, leg, lane, columns, first);
@@ -154,7 +145,7 @@ fn show_span(
     let bar = Rect::from_min_max(pos2(from, lane.top() + 2.0), pos2(to, lane.bottom() - 2.0));
     let painter = ui.painter_at(lane.expand(1.0));
     painter.rect_filled(bar, 2.0, colors::side(leg.0));
-    let id = ui.scope_id().with(("span", lane_name(leg), (span.from_panel * 8.0) as i64));
+    let id = ui.scope_id().with(("span", leg_name(leg.0, leg.1), (span.from_panel * 8.0) as i64));
     let body = ui.interact(bar.intersect(lane), id, Sense::click());
     if body.secondary_clicked() {
         let at = 0.5 * (span.from_panel + span.to_panel);
@@ -177,7 +168,7 @@ fn show_span(
             continue;
         }
         let word = if event == Event::Strike { "strike" } else { "lift-off" };
-        let name = format!("{} {word} {at_panel:.0}", lane_name(leg));
+        let name = format!("{} {word} {at_panel:.0}", leg_name(leg.0, leg.1));
         let response = ui.interact(grip.intersect(lane.expand(1.0)), id.with(word), Sense::drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Slider, true, &name));
         let by_hand = source == EdgeSource::Hand;

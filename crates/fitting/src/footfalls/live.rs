@@ -30,8 +30,8 @@ pub enum Missing {
     Law(Gait),
 }
 
-/// `near fore`, `off hind`, ...
-pub(crate) fn leg_name(side: NearOff, pair: Pair) -> &'static str {
+/// Name of a leg for people: `near fore`, `off hind`, ...
+pub fn leg_name(side: NearOff, pair: Pair) -> &'static str {
     match (side, pair) {
         (NearOff::Near, Pair::Fore) => "near fore",
         (NearOff::Off, Pair::Fore) => "off fore",
