@@ -210,9 +210,8 @@ class Program:
         place = target.middle() if isinstance(target, Widget) else target
         self.point(place)
         time.sleep(GLANCE)
-        self.screen.tool("mousedown", button)
-        time.sleep(0.03)
-        self.screen.tool("mouseup", button)
+        # Down and up at once: on a slow screen a pause could last for a second, which is no click any more.
+        self.screen.tool("click", button)
         time.sleep(GLANCE)
 
     def drag(self, start, end, steps=8, held=None):
@@ -273,6 +272,11 @@ class Program:
         self.process.send_signal(signal.SIGKILL)
         self.process.wait()
         self.link.close()
+
+    def stop(self):
+        """Ends the program, if it still runs, and lets go of it."""
+        if self.process.poll() is None:
+            self.kill()
 
     def ended(self, patience=PATIENCE):
         """Waits until the program has ended by itself; its exit code."""

@@ -187,6 +187,18 @@ class Maker:
                 program.type(text)
                 program.key("Return")
 
+    def scale(self, truth_px_per_m):
+        """The scale that follows, read off the Calibrate page."""
+        program = self.program
+        program.key("F2")
+        numbers = lambda: [w.name for w in program.widgets() if re.match(r"[\d.]+ ± [\d.]+ px/m", w.name)]
+        told = program.wait(numbers, "the scale on the track")[0]
+        self.photograph("scale")
+        px_per_m = float(told.split()[0])
+        near = truth_px_per_m is None or abs(px_per_m / truth_px_per_m - 1) < 0.02
+        self.check(near, f"the scale on the track follows: {told}")
+        program.key("F3")
+
     # Pose page.
 
     def pose_by_hand(self):

@@ -1,6 +1,5 @@
 //! Proposals: points tracked from known panels, and what is seen in the photographs without points. In the background.
 
-mod both;
 mod settle;
 
 use std::collections::BTreeMap;
@@ -31,13 +30,10 @@ struct Looked {
     walls: Vec<Wall>,
 }
 
-/// Known panels on one side of another, the one beside it last.
-type KnownSide = Vec<(u32, Keypoints)>;
-
 /// What tracking has found in a panel, and from what.
 struct Evidence {
     panels: Vec<Panel>,
-    known: Vec<KnownSide>,
+    known: Vec<(u32, Keypoints)>,
     tracked: Vec<Proposal>,
 }
 
@@ -108,20 +104,19 @@ impl Proposals {
         }));
     }
 
-    /// Tracks into `panel` from the known panels on each side of it, the one beside it last, and lays what is found on the
-    /// skeleton. What was tracked before from the same points is only laid on the skeleton anew.
+    /// Tracks from known panels, the one beside `panel` last, into it, and lays what is found on the skeleton. What was tracked
+    /// before from the same points is only laid on the skeleton anew.
     pub fn track(
         &mut self,
         (draft, derived): (&Draft, &Derived),
-        sides: &[Vec<u32>],
+        known: &[u32],
         panel: u32,
         images: &PlateImages,
         context: &Context,
     ) {
         let Some(pyramids) = pyramids(images).filter(|_| self.running.is_none()) else { return };
         let points = |number: &u32| Some((*number, draft.panel(*number)?.keypoints.clone()));
-        let known: Vec<KnownSide> =
-            sides.iter().map(|side| side.iter().filter_map(points).collect()).collect();
+        let known: Vec<(u32, Keypoints)> = known.iter().filter_map(points).collect();
         let panels = draft.manifest.panels.clone();
         let before = self.evidence.remove(&panel);
         let before = before.filter(|before| before.known == known && before.panels == panels);
@@ -201,22 +196,22 @@ impl Proposals {
     }
 }
 
-/// Points of a panel, tracked from each side; none for panels that the plate does not have.
-fn tracked(panels: &[Panel], looked: &Looked, sides: &[KnownSide], panel: u32) -> Option<Vec<Proposal>> {
+/// Points of a panel, tracked from known ones; none for a panel that the plate does not have.
+fn tracked(
+    panels: &[Panel],
+    looked: &Looked,
+    known: &[(u32, Keypoints)],
+    panel: u32,
+) -> Option<Vec<Proposal>> {
     let index = |number: u32| panels.iter().position(|p| p.panel == number);
+    let known = known.iter().filter_map(|(number, points)| {
+        let at = index(*number)?;
+        let silhouette = Some(&looked.silhouettes[at].mask);
+        Some(PanelPoints { view: &looked.views[at], silhouette, points })
+    });
     let next = index(panel)?;
-    let from_side = |side: &KnownSide| {
-        let known: Vec<PanelPoints> = side
-            .iter()
-            .filter_map(|(number, points)| {
-                let at = index(*number)?;
-                let silhouette = Some(&looked.silhouettes[at].mask);
-                Some(PanelPoints { view: &looked.views[at], silhouette, points })
-            })
-            .collect();
-        propose(&known, &looked.views[next], Some(&looked.silhouettes[next].mask))
-    };
-    sides.iter().map(from_side).reduce(|before, after| both::agreed(&before, &after))
+    let known: Vec<PanelPoints> = known.collect();
+    Some(propose(&known, &looked.views[next], Some(&looked.silhouettes[next].mask)))
 }
 
 fn no_view() -> Answer {

@@ -9,30 +9,30 @@ use crate::session::{Page, Session};
 
 /// Fewest points of a panel from which another is tracked.
 const LEAST_KNOWN: usize = 6;
-/// Panels looked back to for tracking: a turn takes two.
-const LOOKED_BACK: usize = 2;
 
 impl Session {
-    /// Panels from which this one can be tracked, on each side the one beside it last, at most two: both sides where they are
-    /// equally well known, else the better known one.
-    fn known_beside(&self) -> Vec<Vec<u32>> {
+    /// Panels from which this one can be tracked, the one beside it last: two before it, else two after it.
+    fn known_beside(&self) -> Option<Vec<u32>> {
         let numbers = self.panel_numbers();
-        let Some(at) = numbers.iter().position(|number| *number == self.panel) else { return Vec::new() };
+        let at = numbers.iter().position(|number| *number == self.panel)?;
         let is_known = |panel: &u32| {
-            let placed =
-                |p: &PanelAnnotation| p.keypoints.iter().filter(|(_, p)| p.place().is_some()).count();
-            self.draft().panel(*panel).is_some_and(|p| placed(p) >= LEAST_KNOWN)
+            let placed = self.draft().panel(*panel);
+            placed.is_some_and(|p| {
+                p.keypoints.iter().filter(|(_, p)| p.place().is_some()).count() >= LEAST_KNOWN
+            })
         };
-        let beside = |way: Vec<u32>| {
-            let mut known: Vec<u32> = way.into_iter().take(LOOKED_BACK).take_while(is_known).collect();
-            known.reverse();
-            known
+        let beside = |mut way: Vec<u32>| {
+            way.truncate(2);
+            let known: Vec<u32> = way.into_iter().take_while(is_known).collect();
+            (!known.is_empty()).then(|| known.into_iter().rev().collect::<Vec<u32>>())
         };
-        let mut sides =
-            vec![beside(numbers[..at].iter().rev().copied().collect()), beside(numbers[at + 1..].to_vec())];
-        let most = sides.iter().map(Vec::len).max().unwrap_or(0).max(1);
-        sides.retain(|side| side.len() == most);
-        sides
+        let before = beside(numbers[..at].iter().rev().copied().collect());
+        let after = beside(numbers[at + 1..].to_vec());
+        match (before, after) {
+            (Some(before), Some(after)) if after.len() > before.len() => Some(after),
+            (Some(before), _) => Some(before),
+            (None, after) => after,
+        }
     }
 
     /// Why nothing can be tracked into this panel.
@@ -42,7 +42,7 @@ impl Session {
         } else if self.proposals.work().is_some() {
             Some("Something else is being worked out")
         } else {
-            self.known_beside().is_empty().then_some("Neither the panel before nor the one after has points")
+            self.known_beside().is_none().then_some("Neither the panel before nor the one after has points")
         }
     }
 
@@ -63,9 +63,9 @@ impl Session {
     }
 
     pub(super) fn propose_tracked(&mut self, context: &Context) {
-        let sides = self.known_beside();
+        let Some(known) = self.known_beside() else { return };
         let documents = (self.document.draft(), &self.derived);
-        self.proposals.track(documents, &sides, self.panel, &self.images, context);
+        self.proposals.track(documents, &known, self.panel, &self.images, context);
     }
 
     /// The panels of the stride in order of time, as interpolation wants them.

@@ -10,10 +10,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use muybridge_capture::{
-    BodyPoint, Draft, Facing, KEYPOINT_COUNT, Keypoint, LimbJoint, NearOff, PanelAnnotation, PanelCamera,
-    PanelUse, Placed, PlacedBy, Plate, calibrate,
+    BodyPoint, Draft, Facing, KEYPOINT_COUNT, Keypoint, LimbJoint, PanelAnnotation, PanelCamera, PanelUse,
+    Placed, PlacedBy, Plate, calibrate,
 };
-use muybridge_core::{Pair, Skeleton};
+use muybridge_core::Skeleton;
 use muybridge_fitting::layout::SHARED;
 use muybridge_fitting::observation::StrideObservation;
 use muybridge_fitting::posing::PanelPoser;
@@ -28,9 +28,6 @@ const LEAST_POINTS: usize = 6;
 /// Way from the tracked place to the skeleton's for knees, hocks, fetlocks and hooves: on drawn plates both are equally
 /// good, and their errors have different causes.
 const LOWER_LIMB_SHARE: f64 = 0.5;
-
-/// A tracked point farther than this from where a person puts it, m, was something else: twice the width of a cannon.
-const ASTRAY_M: f64 = 0.1;
 
 type Places = [[f64; 2]; KEYPOINT_COUNT];
 
@@ -54,46 +51,17 @@ impl Settling {
 
     /// The tracked points of a panel, moved towards the skeleton that the points of all panels make.
     pub(super) fn settle(&self, draft: &Draft, panel: u32, tracked: &[Proposal]) -> Vec<Proposal> {
-        let astray = self.astray(draft, panel, tracked);
-        let is_astray = |keypoint: Keypoint| limb(keypoint).is_some_and(|limb| astray.contains(&limb));
         let mut draft = draft.clone();
         let keypoints = &mut draft.panel_mut(panel).keypoints;
         for proposal in tracked {
-            if keypoints.get(proposal.keypoint).is_some_and(|placed| placed.by == PlacedBy::Hand) {
-                continue;
-            }
-            if is_astray(proposal.keypoint) {
-                keypoints.remove(proposal.keypoint);
-            } else {
+            if keypoints.get(proposal.keypoint).is_none_or(|placed| placed.by != PlacedBy::Hand) {
                 keypoints.insert(proposal.keypoint, proposal.placed);
             }
         }
-        let Some(places) = self.fitted_px(&draft, panel).or_else(|| self.posed_px(&draft, panel)) else {
-            return tracked.to_vec();
-        };
-        let settled = |proposal: &Proposal| {
-            let share = if is_astray(proposal.keypoint) { 1.0 } else { share(proposal.keypoint) };
-            towards(proposal, share, places[proposal.keypoint.index()])
-        };
-        tracked.iter().map(settled).collect()
-    }
-
-    /// Limbs of which a person has put a point far from where it was tracked: what was tracked of them is another limb, or
-    /// none.
-    fn astray(&self, draft: &Draft, panel: u32, tracked: &[Proposal]) -> Vec<(NearOff, Pair)> {
-        let (Some(annotation), Some(camera)) = (draft.panel(panel), self.cameras.get(&panel)) else {
-            return Vec::new();
-        };
-        let is_off = |proposal: &&Proposal| {
-            let placed =
-                annotation.keypoints.get(proposal.keypoint).filter(|placed| placed.by == PlacedBy::Hand);
-            let both = placed.and_then(|placed| placed.at_px).zip(proposal.placed.at_px);
-            both.is_some_and(|([ax, ay], [bx, by])| {
-                (ax - bx).hypot(ay - by)
-                    > std::env::var("ASTRAY").map_or(ASTRAY_M, |v| v.parse().unwrap()) * camera.px_per_m
-            })
-        };
-        tracked.iter().filter(is_off).filter_map(|proposal| limb(proposal.keypoint)).collect()
+        match self.fitted_px(&draft, panel).or_else(|| self.posed_px(&draft, panel)) {
+            Some(places) => tracked.iter().map(|proposal| towards(proposal, &places)).collect(),
+            None => tracked.to_vec(),
+        }
     }
 
     /// Places of the stride fitted to the panels that have points; none while it cannot be fitted.
@@ -142,14 +110,8 @@ fn share(keypoint: Keypoint) -> f64 {
     }
 }
 
-fn limb(keypoint: Keypoint) -> Option<(NearOff, Pair)> {
-    match keypoint {
-        Keypoint::Body(_) => None,
-        Keypoint::Limb(side, pair, _) => Some((side, pair)),
-    }
-}
-
-fn towards(proposal: &Proposal, share: f64, place: [f64; 2]) -> Proposal {
+fn towards(proposal: &Proposal, places: &Places) -> Proposal {
+    let (share, place) = (share(proposal.keypoint), places[proposal.keypoint.index()]);
     let between = |at: [f64; 2]| [0, 1].map(|axis| at[axis] + share * (place[axis] - at[axis]));
     let by = if share < 1.0 { PlacedBy::Tracked } else { PlacedBy::Fitted };
     let placed = Placed { at_px: proposal.placed.at_px.map(between), by, ..proposal.placed };

@@ -12,15 +12,13 @@ use super::window::Window;
 /// Standard deviation of a coordinate of a placed point as a share of the withers height, visible and guessed: 1.5 and 2.4 px
 /// at 187 px, which is what `muybridge annotations compare` finds between the two passes over Sallie Gardner.
 const HAND: [f64; 2] = [1.5 / 187.0, 2.4 / 187.0];
-/// A proposed point is left alone within so many of those: two thirds of a person's own clicks lie as near. Within twice that
-/// deviation the points would be as good as clicks, but what is proposed errs alike from panel to panel, and the fit cannot
-/// average that away.
-const LEFT_ALONE: f64 = 1.5;
+/// A proposed point is left alone within so many of those: seven of ten of a person's own clicks lie as near. With two, the
+/// points would still be as good as clicks, but what is proposed errs alike from panel to panel, and the fit cannot average
+/// that away.
+const LEFT_ALONE: f64 = 1.55;
 /// With this many wrong points or more, the worst few are corrected first and the rest proposed again.
 const MANY: usize = 3;
 const WORST: usize = 2;
-/// How often.
-const AGAIN: usize = 4;
 
 /// What the hand has done.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,6 +32,7 @@ pub struct Count {
 }
 
 impl Count {
+    /// Gestures of the pointer.
     pub fn clicks(&self) -> usize {
         self.points + self.contacts
     }
@@ -47,8 +46,6 @@ pub struct Person {
     hand: Vec<[f64; 2]>,
     pub count: Count,
 }
-
-fn env(name: &str, d: f64) -> f64 { std::env::var(name).map_or(d, |v| v.parse().unwrap()) }
 
 fn distance([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
     (ax - bx).hypot(ay - by)
@@ -85,7 +82,8 @@ impl Person {
         let visible_sd_px = HAND[0] * self.withers_px;
         let occluded_sd_px = HAND[1] * self.withers_px;
         window.session().edit("Marks", |draft| {
-            (draft.annotation.visible_sd_px, draft.annotation.occluded_sd_px) = (visible_sd_px, occluded_sd_px);
+            (draft.annotation.visible_sd_px, draft.annotation.occluded_sd_px) =
+                (visible_sd_px, occluded_sd_px);
             draft.annotation.stride = self.truth.stride;
             for panel in &self.truth.panels {
                 match panel.usage {
@@ -162,27 +160,20 @@ impl Person {
     pub fn corrects_proposals(&mut self, window: &mut Window) {
         let stride = self.stride();
         self.places_panel(window, stride[0]);
-        for round in 0..env("PASSES", 1.0) as usize {
-            for panel in &stride[1..] {
-                let passes = env("PASSES", 1.0) as usize;
-                let tol = if round + 1 < passes { env("TOL1", 2.0) } else { env("TOL", LEFT_ALONE) };
-                self.looks_over(window, *panel, tol);
-            }
+        for panel in &stride[1..] {
+            self.looks_over(window, *panel);
         }
     }
 
-    fn looks_over(&mut self, window: &mut Window, panel: u32, tol: f64) {
+    fn looks_over(&mut self, window: &mut Window, panel: u32) {
         self.goes_to(window, panel);
         self.proposes(window);
-        for _ in 0..AGAIN {
-            let wrong = self.wrong(window, panel, tol);
-            if wrong.len() < env("MANY", MANY as f64) as usize {
-                break;
-            }
-            self.corrects(window, panel, &wrong[..(env("WORST", WORST as f64) as usize).min(wrong.len())]);
+        let mut wrong = self.wrong(window, panel);
+        while wrong.len() >= MANY {
+            self.corrects(window, panel, &wrong[..WORST]);
             self.proposes(window);
+            wrong = self.wrong(window, panel);
         }
-        let wrong = self.wrong(window, panel, tol);
         self.corrects(window, panel, &wrong);
     }
 
@@ -193,14 +184,15 @@ impl Person {
 
     fn corrects(&mut self, window: &mut Window, panel: u32, keypoints: &[Keypoint]) {
         for keypoint in keypoints {
-            let placed = window.session().draft().panel(panel).and_then(|p| p.keypoints.get(*keypoint).copied());
+            let placed =
+                window.session().draft().panel(panel).and_then(|p| p.keypoints.get(*keypoint).copied());
             self.puts(window, panel, *keypoint, placed.map_or(KeypointState::Visible, |placed| placed.state));
         }
         window.settle();
     }
 
     /// Proposed points that are visibly wrong, worst first.
-    fn wrong(&self, window: &mut Window, panel: u32, tol: f64) -> Vec<Keypoint> {
+    fn wrong(&self, window: &mut Window, panel: u32) -> Vec<Keypoint> {
         let draft = window.session().draft();
         let keypoints = &draft.panel(panel).unwrap().keypoints;
         let off = |keypoint: Keypoint| match keypoints.get(keypoint) {
@@ -211,7 +203,7 @@ impl Person {
             _ => f64::INFINITY,
         };
         let mut wrong: Vec<(Keypoint, f64)> = Keypoint::all().map(|k| (k, off(k))).collect();
-        wrong.retain(|(_, off)| *off > tol);
+        wrong.retain(|(_, off)| *off > LEFT_ALONE);
         wrong.sort_by(|a, b| b.1.total_cmp(&a.1));
         wrong.into_iter().map(|(keypoint, _)| keypoint).collect()
     }
@@ -223,7 +215,12 @@ impl Person {
             let at_px = draft.panel(panel).unwrap().keypoints.place(keypoint).unwrap();
             distance(at_px, self.true_px(panel, keypoint))
         };
-        self.rms(self.stride().into_iter().flat_map(|p| Keypoint::all().map(move |k| (p, k))).map(|(p, k)| off(p, k)))
+        self.rms(
+            self.stride()
+                .into_iter()
+                .flat_map(|p| Keypoint::all().map(move |k| (p, k)))
+                .map(|(p, k)| off(p, k)),
+        )
     }
 
     /// The same of the fitted joints.
@@ -231,7 +228,9 @@ impl Person {
         let kinematics = fit.kinematics();
         let slots = fit.problem.order.iter().map(|i| fit.observation.panels[*i].camera.panel).enumerate();
         let places = slots.flat_map(|(slot, panel)| Keypoint::all().map(move |k| (slot, panel, k)));
-        self.rms(places.map(|(slot, panel, k)| distance(fit.place_px(slot, &kinematics[slot], k), self.true_px(panel, k))))
+        self.rms(places.map(|(slot, panel, k)| {
+            distance(fit.place_px(slot, &kinematics[slot], k), self.true_px(panel, k))
+        }))
     }
 
     fn rms(&self, distances_px: impl Iterator<Item = f64>) -> f64 {

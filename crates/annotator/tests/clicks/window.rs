@@ -71,11 +71,13 @@ impl Window {
         self.settle();
     }
 
-    /// The stride fitted to the points as they are.
-    pub fn fitted(&mut self) -> PlateFit {
+    /// The stride fitted to the points as they are, or why it cannot be.
+    pub fn fitted(&mut self) -> Result<PlateFit, String> {
         self.run(Command::FitNow);
         let fit = &self.session().fit;
-        assert_eq!(fit.fault(), None);
-        fit.latest().unwrap().plate.clone()
+        match (fit.fault(), fit.latest()) {
+            (None, Some(fitted)) => Ok(fitted.plate.clone()),
+            (fault, _) => Err(fault.unwrap_or("no fit").to_string()),
+        }
     }
 }

@@ -40,7 +40,7 @@ const CHANGES: [fn(&mut Specimen); 46] = [
     |p| p.annotation["images_sha256"] = json!([]),
     |p| {
         p.annotation["instants"] =
-            json!([{"side": "near", "pair": "fore", "event": "strike", "at_panel": 1e300}])
+            json!([{"side": "near", "pair": "fore", "event": "strike", "at_panel": 1e300}]);
     },
     |p| p.annotation["notes"] = json!(["x".repeat(3_000_000)]),
     |p| p.manifest["panels"][0]["panel"] = json!(0),
@@ -52,11 +52,11 @@ const CHANGES: [fn(&mut Specimen); 46] = [
     |p| p.manifest["panels"][0]["quad_px"] = json!([[0.0, 0.0], [1e300, 0.0], [1e300, 1e300], [0.0, 1e300]]),
     |p| {
         p.manifest["panels"] =
-            (1..=100_000).map(|n| json!({"panel": n, "image": 0, "quad_px": QUAD})).collect()
+            (1..=100_000).map(|n| json!({"panel": n, "image": 0, "quad_px": QUAD})).collect();
     },
     |p| {
         p.manifest["panels"] =
-            (0..100_000).map(|_| json!({"panel": 0, "image": 9, "quad_px": QUAD})).collect()
+            (0..100_000).map(|_| json!({"panel": 0, "image": 9, "quad_px": QUAD})).collect();
     },
     |p| p.manifest["images"] = json!([]),
     |p| p.manifest["images"][0]["width_px"] = json!(0),

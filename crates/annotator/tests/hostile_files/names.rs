@@ -52,7 +52,7 @@ fn unix_names(folder: &Path) -> Vec<std::path::PathBuf> {
     paths.push(named);
     let closed = folder.join("closed.json");
     write(&closed, b"{}");
-    std::fs::set_permissions(&closed, std::fs::Permissions::from_mode(0)).unwrap();
+    std::fs::set_permissions(&closed, std::fs::Permissions::from_mode(0o000)).unwrap();
     paths.push(closed);
     paths
 }
