@@ -199,6 +199,12 @@ class Program:
 
         self.wait(still, "rest", patience)
 
+    def rest(self):
+        """Waits until what was done is on the screen: what is typed goes where the click has led."""
+        time.sleep(GLANCE)
+        if self.process.poll() is None:
+            self.widgets()
+
     def point(self, place):
         """Moves the pointer."""
         self.screen.tool("mousemove", round(place[0]), round(place[1]))
@@ -212,7 +218,7 @@ class Program:
         time.sleep(GLANCE)
         # Down and up at once: on a slow screen a pause could last for a second, which is no click any more.
         self.screen.tool("click", button)
-        time.sleep(GLANCE)
+        self.rest()
 
     def drag(self, start, end, steps=8, held=None):
         """Drags from a place to another; `held` is done before the button is let go."""
@@ -226,7 +232,8 @@ class Program:
         if held:
             held()
         self.screen.tool("mouseup", 1)
-        time.sleep(2 * GLANCE)
+        self.rest()
+        self.rest()
 
     def scroll(self, place, clicks):
         """Turns the wheel over a place; downwards when positive."""
@@ -238,7 +245,7 @@ class Program:
         """Presses keys one after the other."""
         for key in keys:
             self.screen.tool("key", key)
-            time.sleep(GLANCE)
+            self.rest()
 
     def type(self, text):
         """Types."""

@@ -81,6 +81,7 @@ class Person(Maker):
     def killed_and_recovered(self):
         """Three more edits, a kill; the next start offers exactly that state. One undo; then it is closed and saved."""
         program = self.program
+        self.save()
         self.open_path(self.annotation_path)
         program.key("F3")
         name = "near hock"

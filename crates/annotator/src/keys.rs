@@ -101,9 +101,28 @@ fn from_words(words: &str) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(modifiers, Key::from_name(rest)?))
 }
 
+/// Whether a key only changes what others mean: Ctrl+L begins with one.
+fn is_modifier(key: Key) -> bool {
+    use Key as K;
+    matches!(
+        key,
+        K::ShiftLeft
+            | K::ShiftRight
+            | K::ControlLeft
+            | K::ControlRight
+            | K::AltLeft
+            | K::AltRight
+            | K::SuperLeft
+            | K::SuperRight
+    )
+}
+
 /// The key of an input event, with the modifiers that keys are told apart by.
 pub fn pressed(event: &egui::Event) -> Option<KeyboardShortcut> {
     let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return None };
+    if is_modifier(*key) {
+        return None;
+    }
     let mut held = Modifiers::NONE;
     for (is_held, modifier) in [
         (modifiers.command || modifiers.ctrl, Modifiers::COMMAND),
@@ -128,6 +147,21 @@ mod tests {
         }
         assert_eq!(to_words(&Command::Redo.description().keys[0]), "Ctrl+Shift+Z");
         assert_eq!(from_words("Ctrl+Nonsense"), None);
+    }
+
+    #[test]
+    fn a_modifier_alone_is_no_key_to_choose() {
+        let event = |key, modifiers| egui::Event::Key {
+            key,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers,
+        };
+        assert_eq!(pressed(&event(Key::ControlLeft, Modifiers::CTRL)), None);
+        let key = pressed(&event(Key::L, Modifiers::CTRL | Modifiers::SHIFT)).unwrap();
+        assert_eq!(to_words(&key), "Ctrl+Shift+L");
+        assert_eq!(to_words(&KeyboardShortcut::new(Modifiers::NONE, Key::OpenBracket)), "[");
     }
 
     #[test]

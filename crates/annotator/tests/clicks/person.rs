@@ -22,29 +22,29 @@ const WORST: usize = 2;
 
 /// What the hand has done.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Count {
+pub(crate) struct Count {
     /// Clicks and drags on the photographs.
-    pub points: usize,
+    pub(crate) points: usize,
     /// Drags on the footfall bar.
-    pub contacts: usize,
+    pub(crate) contacts: usize,
     /// Keys.
-    pub keys: usize,
+    pub(crate) keys: usize,
 }
 
 impl Count {
     /// Gestures of the pointer.
-    pub fn clicks(&self) -> usize {
+    pub(crate) fn clicks(&self) -> usize {
         self.points + self.contacts
     }
 }
 
 /// A person, who knows the truth but for the hand.
-pub struct Person {
+pub(crate) struct Person {
     truth: Annotation,
     withers_px: f64,
     /// Where this person sees a point, in standard deviations from where it is; the same whenever it is looked at.
     hand: Vec<[f64; 2]>,
-    pub count: Count,
+    pub(crate) count: Count,
 }
 
 fn distance([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
@@ -52,7 +52,7 @@ fn distance([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
 }
 
 impl Person {
-    pub fn new(truth: Annotation, withers_px: f64, seed: u64) -> Self {
+    pub(crate) fn new(truth: Annotation, withers_px: f64, seed: u64) -> Self {
         let mut random = Random::new(seed);
         let count = truth.panels.len() * muybridge_capture::KEYPOINT_COUNT;
         let hand = (0..count).map(|_| [random.normal(), random.normal()]).collect();
@@ -63,7 +63,7 @@ impl Person {
         self.truth.panels.iter().find(|p| p.panel == panel).unwrap()
     }
 
-    pub fn true_px(&self, panel: u32, keypoint: Keypoint) -> [f64; 2] {
+    pub(crate) fn true_px(&self, panel: u32, keypoint: Keypoint) -> [f64; 2] {
         self.true_panel(panel).keypoints.place(keypoint).unwrap()
     }
 
@@ -78,7 +78,7 @@ impl Person {
     }
 
     /// What both ways of working share and the manifest does not hold: marks of the wall, standing panels, scatter, ground.
-    pub fn prepares(&mut self, window: &mut Window) {
+    pub(crate) fn prepares(&mut self, window: &mut Window) {
         let visible_sd_px = HAND[0] * self.withers_px;
         let occluded_sd_px = HAND[1] * self.withers_px;
         window.session().edit("Marks", |draft| {
@@ -112,7 +112,9 @@ impl Person {
                 let session = window.session();
                 let clock = session.derived.footfalls.as_ref().unwrap().clock.clone();
                 session.edit("Footfall", |draft| {
-                    numbers.iter().for_each(|panel| drop(draft.panel_mut(*panel)));
+                    for panel in &numbers {
+                        draft.panel_mut(*panel);
+                    }
                     let span = [from, from + length as f64];
                     draft.annotation = with_span(&draft.annotation, &clock, leg, span);
                 });
@@ -123,7 +125,7 @@ impl Person {
     }
 
     /// Every point of every panel by a click.
-    pub fn places_all(&mut self, window: &mut Window) {
+    pub(crate) fn places_all(&mut self, window: &mut Window) {
         for panel in self.stride() {
             self.places_panel(window, panel);
         }
@@ -157,7 +159,7 @@ impl Person {
     }
 
     /// The first panel by hand, every other one proposed and looked over.
-    pub fn corrects_proposals(&mut self, window: &mut Window) {
+    pub(crate) fn corrects_proposals(&mut self, window: &mut Window) {
         let stride = self.stride();
         self.places_panel(window, stride[0]);
         for panel in &stride[1..] {
@@ -209,7 +211,7 @@ impl Person {
     }
 
     /// Root mean square distance of the placed points of the stride from the truth, as a share of the withers height.
-    pub fn rms_of_points(&self, window: &mut Window) -> f64 {
+    pub(crate) fn rms_of_points(&self, window: &mut Window) -> f64 {
         let draft = window.session().draft().clone();
         let off = |panel: u32, keypoint: Keypoint| {
             let at_px = draft.panel(panel).unwrap().keypoints.place(keypoint).unwrap();
@@ -224,7 +226,7 @@ impl Person {
     }
 
     /// The same of the fitted joints.
-    pub fn rms_of_joints(&self, fit: &muybridge_fitting::stride_fit::StrideFit) -> f64 {
+    pub(crate) fn rms_of_joints(&self, fit: &muybridge_fitting::stride_fit::StrideFit) -> f64 {
         let kinematics = fit.kinematics();
         let slots = fit.problem.order.iter().map(|i| fit.observation.panels[*i].camera.panel).enumerate();
         let places = slots.flat_map(|(slot, panel)| Keypoint::all().map(move |k| (slot, panel, k)));

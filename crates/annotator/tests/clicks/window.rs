@@ -15,7 +15,7 @@ use tempfile::TempDir;
 const LOOK: Duration = Duration::from_millis(1);
 
 /// The program without a display.
-pub struct Window {
+pub(crate) struct Window {
     annotator: Annotator,
     context: Context,
     messages: Messages,
@@ -24,7 +24,7 @@ pub struct Window {
 
 impl Window {
     /// Opens a copy of a manifest and its photograph; there is no annotation beside them.
-    pub fn open(manifest: &Path, photograph: &Path) -> Self {
+    pub(crate) fn open(manifest: &Path, photograph: &Path) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let copy = |from: &Path| {
             let to = folder.path().join(from.file_name().unwrap());
@@ -46,12 +46,12 @@ impl Window {
         window
     }
 
-    pub fn session(&mut self) -> &mut Session {
+    pub(crate) fn session(&mut self) -> &mut Session {
         self.annotator.session.as_mut().unwrap()
     }
 
     /// Frames pass until nothing is under way.
-    pub fn settle(&mut self) {
+    pub(crate) fn settle(&mut self) {
         loop {
             let session = self.annotator.session.as_mut().unwrap();
             session.finish_background_work(&mut self.messages);
@@ -64,7 +64,7 @@ impl Window {
     }
 
     /// Does a command as its key does, and waits for what it starts.
-    pub fn run(&mut self, command: Command) {
+    pub(crate) fn run(&mut self, command: Command) {
         assert_eq!(self.annotator.why_not(command), None, "{command:?}");
         let context = self.context.clone();
         self.annotator.run(&context, command);
@@ -72,7 +72,7 @@ impl Window {
     }
 
     /// The stride fitted to the points as they are, or why it cannot be.
-    pub fn fitted(&mut self) -> Result<PlateFit, String> {
+    pub(crate) fn fitted(&mut self) -> Result<PlateFit, String> {
         self.run(Command::FitNow);
         let fit = &self.session().fit;
         match (fit.fault(), fit.latest()) {
