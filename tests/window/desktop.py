@@ -202,8 +202,11 @@ class Program:
     def rest(self):
         """Waits until what was done is on the screen: what is typed goes where the click has led."""
         time.sleep(GLANCE)
-        if self.process.poll() is None:
+        try:
             self.widgets()
+        except (Failure, OSError):
+            # Ctrl+Q ends the program; who waits for something else will not find it.
+            pass
 
     def point(self, place):
         """Moves the pointer."""

@@ -123,7 +123,7 @@ class Maker:
     def name_plate(self, gait, title):
         """Gait of the title, title, facing."""
         program = self.program
-        program.click(program.see("gallop", role="comboBox"))
+        program.click("Gait of the title:", part=True, role="comboBox")
         program.click(gait, role="button")
         program.fill("Title", title, role="textInput")
         program.click("Right", role="button")
@@ -312,21 +312,23 @@ class Maker:
     # Footfalls.
 
     def draw_stance(self, lane, panels):
-        """Drags over the panels of one lane in which the hoof is down."""
+        """Drags over the panels of one lane in which the hoof is down, when it is down once; those panels."""
         x0, y0, x1, y1 = self.program.see(f"Footfalls {lane}").bounds
         width, y = (x1 - x0) / PANELS, (y0 + y1) / 2
         first, last = min(panels), max(panels)
-        if last - first + 1 == len(panels):
-            self.program.drag([x0 + (first - 0.9) * width, y], [x0 + (last - 0.1) * width, y])
+        if last - first + 1 != len(panels):
+            return []
+        self.program.drag([x0 + (first - 0.9) * width, y], [x0 + (last - 0.1) * width, y])
+        return panels
 
     def contacts(self):
         """One lane's stance is drawn, the rest is told by keys panel by panel; then an edge is dragged."""
         program = self.program
         seen = {p["panel"]: p["contacts"] for p in self.truth["panels"]}
-        self.draw_stance("near fore", [panel for panel in seen if seen[panel]["near_fore"] == "stance"])
+        down = self.draw_stance("near fore", [panel for panel in seen if seen[panel]["near_fore"] == "stance"])
         program.click("Panel 1", role="button")
         for panel in seen:
-            drawn = {"near_fore": "stance"} if seen[panel]["near_fore"] == "stance" else {}
+            drawn = {"near_fore": "stance"} if panel in down else {}
             for key, lane in enumerate(LANES, 1):
                 wanted, now = seen[panel][lane], drawn.get(lane, "unknown")
                 if wanted != now:

@@ -55,6 +55,7 @@ KNOWN = {
             ("Camera to wall", "13.5"),
             ("Camera spacing", "0.6858"),
             ("Interval", "1/25"),
+            ("= Last panel of the stride", "panel 11"),
         ],
         "px_per_m": None,
         "tracked_px": 30.0,

@@ -74,11 +74,20 @@ impl AnatomyPicture {
     }
 
     /// Draws it as wide as there is room, with the placed points filled and one of them ringed. A point that was clicked.
-    pub fn show(&self, ui: &mut Ui, placed: impl Fn(Keypoint) -> bool, ringed: Option<Keypoint>) -> Option<Keypoint> {
+    pub fn show(
+        &self,
+        ui: &mut Ui,
+        placed: impl Fn(Keypoint) -> bool,
+        ringed: Option<Keypoint>,
+    ) -> Option<Keypoint> {
         let width = ui.available_width();
         let (rect, response) = ui.allocate_exact_size(vec2(width, 0.8 * width), Sense::click());
         response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, "Picture of the horse with its points")
+            egui::WidgetInfo::labeled(
+                egui::accesskit::Role::Image,
+                true,
+                "Picture of the horse with its points",
+            )
         });
         let painter = ui.painter_at(rect);
         let to_screen = self.to_screen(rect);
@@ -122,7 +131,8 @@ impl AnatomyPicture {
             painter.circle_filled(b, half, color);
         };
         let near = Limb::new(Pair::Fore, self.facing.side(muybridge_capture::NearOff::Near)).first_bone();
-        let near_hind = Limb::new(Pair::Hind, self.facing.side(muybridge_capture::NearOff::Near)).first_bone();
+        let near_hind =
+            Limb::new(Pair::Hind, self.facing.side(muybridge_capture::NearOff::Near)).first_bone();
         for (bone, half_m) in &self.bones {
             let off_limb = *bone >= bone::LIMBS
                 && !(near..near + 5).contains(bone)

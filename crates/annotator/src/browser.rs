@@ -43,21 +43,25 @@ impl Browser {
     pub fn show(&mut self, context: &Context, messages: &mut Messages) -> (Option<PathBuf>, bool) {
         let (mut stays, mut chosen) = (true, self.catalogue.finish(messages));
         let window = Window::new("Plates").open(&mut stays).collapsible(false).default_size([620.0, 480.0]);
-        window.pivot(Align2::CENTER_CENTER).default_pos(context.content_rect().center()).show(context, |ui| {
-            chosen = chosen.take().or(self.path_line(ui));
-            ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.list, List::Folder, "On this machine");
-                ui.selectable_value(&mut self.list, List::Catalogue, "Animal Locomotion, 1887");
-                let filter = TextEdit::singleline(&mut self.filter).hint_text("Search").desired_width(160.0);
-                named(ui.add(filter), "Search plates");
-            });
-            ui.separator();
-            let filter = self.filter.to_lowercase();
-            chosen = chosen.take().or(match self.list {
-                List::Folder => self.shelf.show(ui, &filter),
-                List::Catalogue => self.catalogue.show(ui, &filter),
-            });
-        });
+        window.pivot(Align2::CENTER_CENTER).default_pos(context.content_rect().center()).show(
+            context,
+            |ui| {
+                chosen = chosen.take().or(self.path_line(ui));
+                ui.horizontal(|ui| {
+                    ui.selectable_value(&mut self.list, List::Folder, "On this machine");
+                    ui.selectable_value(&mut self.list, List::Catalogue, "Animal Locomotion, 1887");
+                    let filter =
+                        TextEdit::singleline(&mut self.filter).hint_text("Search").desired_width(160.0);
+                    named(ui.add(filter), "Search plates");
+                });
+                ui.separator();
+                let filter = self.filter.to_lowercase();
+                chosen = chosen.take().or(match self.list {
+                    List::Folder => self.shelf.show(ui, &filter),
+                    List::Catalogue => self.catalogue.show(ui, &filter),
+                });
+            },
+        );
         let stays = stays && chosen.is_none();
         (chosen, stays)
     }

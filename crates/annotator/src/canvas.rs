@@ -88,9 +88,7 @@ impl PanelCanvas {
             return None;
         };
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::accesskit::Role::Canvas, true, "Photograph")
-        });
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Canvas, true, "Photograph"));
         let view = moved(ui, &response, session.zoom.view(&panel, rect));
         session.zoom.take(&view, &panel, rect);
         let view = session.zoom.view(&panel, rect);
@@ -137,7 +135,11 @@ fn draw_photograph(painter: &Painter, session: &mut Session, panel: &Panel, view
                 Some(ImageState::Failed(trouble)) => trouble.clone(),
                 _ => "Reading the photograph…".into(),
             };
-            painter.add(egui::Shape::convex_polygon(corners.into(), Color32::from_gray(90), egui::Stroke::NONE));
+            painter.add(egui::Shape::convex_polygon(
+                corners.into(),
+                Color32::from_gray(90),
+                egui::Stroke::NONE,
+            ));
             let font = egui::FontId::proportional(14.0);
             let galley = painter.layout(text, font, Color32::WHITE, rect.width() * 0.6);
             painter.galley(rect.center() - galley.size() / 2.0, galley, Color32::WHITE);
@@ -184,11 +186,7 @@ mod tests {
 
     fn panel(left: f64) -> Panel {
         let (right, top, bottom) = (left + 300.0, 40.0, 240.0);
-        Panel {
-            panel: 1,
-            image: 0,
-            quad_px: [[left, top], [right, top], [right, bottom], [left, bottom]],
-        }
+        Panel { panel: 1, image: 0, quad_px: [[left, top], [right, top], [right, bottom], [left, bottom]] }
     }
 
     #[test]
@@ -198,7 +196,8 @@ mod tests {
         let closer = zoom.view(&panel(10.0), canvas).zoomed(4.0, pos2(100.0, 600.0));
         zoom.take(&closer, &panel(10.0), canvas);
         let (here, there) = (zoom.view(&panel(10.0), canvas), zoom.view(&panel(400.0), canvas));
-        let (a, b) = (here.plate_from_screen(pos2(450.0, 350.0)), there.plate_from_screen(pos2(450.0, 350.0)));
+        let (a, b) =
+            (here.plate_from_screen(pos2(450.0, 350.0)), there.plate_from_screen(pos2(450.0, 350.0)));
         assert!((here.zoom - there.zoom).abs() < 1e-9);
         assert!((b[0] - a[0] - 390.0).abs() < 1e-6 && (b[1] - a[1]).abs() < 1e-6);
     }

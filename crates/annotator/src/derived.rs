@@ -10,7 +10,8 @@ use muybridge_fitting::checks::{Concern, before_fit};
 use muybridge_fitting::footfalls::{Footfalls, LiveGait, Missing, StrideClock};
 use muybridge_fitting::layout::SHARED;
 use muybridge_fitting::posing::{
-    HandScatter, PanelPose, PanelPoser, PlacedPanel, PlateScale, plate_lengths, plate_scale, provisional_camera,
+    HandScatter, PanelPose, PanelPoser, PlacedPanel, PlateScale, plate_lengths, plate_scale,
+    provisional_camera,
 };
 
 use crate::fit_state::Fitted;
@@ -164,7 +165,12 @@ impl Derived {
 
     /// The similarity that lays one panel over another: scale and slope by their cameras, ground on ground, withers on
     /// withers (or, where they are not placed, the middle of what is placed). As `[px] -> [px]`.
-    pub fn registration(&self, draft: &Draft, from: u32, to: u32) -> Option<impl Fn([f64; 2]) -> [f64; 2] + use<>> {
+    pub fn registration(
+        &self,
+        draft: &Draft,
+        from: u32,
+        to: u32,
+    ) -> Option<impl Fn([f64; 2]) -> [f64; 2] + use<>> {
         let (source, target) = (*self.cameras.get(&from)?, *self.cameras.get(&to)?);
         let anchor = |panel: u32, camera: &PanelCamera| {
             let keypoints = draft.panel(panel).map(|panel| &panel.keypoints);

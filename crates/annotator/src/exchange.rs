@@ -51,23 +51,26 @@ impl ExchangeWindow {
         let mut open = true;
         let title = if self.way == Way::In { "Import points" } else { "Export points" };
         let window = Window::new(title).open(&mut open).collapsible(false).default_width(520.0);
-        window.pivot(Align2::CENTER_CENTER).default_pos(context.content_rect().center()).show(context, |ui| {
-            self.form(ui);
-            let go = if self.way == Way::In { "Import" } else { "Export" };
-            if ui.button(go).clicked() {
-                let done = match self.way {
-                    Way::In => self.take_in(session),
-                    Way::Out => self.put_out(session),
-                };
-                match done {
-                    Ok(text) => messages.note(text),
-                    Err(trouble) => messages.trouble(trouble),
+        window.pivot(Align2::CENTER_CENTER).default_pos(context.content_rect().center()).show(
+            context,
+            |ui| {
+                self.form(ui);
+                let go = if self.way == Way::In { "Import" } else { "Export" };
+                if ui.button(go).clicked() {
+                    let done = match self.way {
+                        Way::In => self.take_in(session),
+                        Way::Out => self.put_out(session),
+                    };
+                    match done {
+                        Ok(text) => messages.note(text),
+                        Err(trouble) => messages.trouble(trouble),
+                    }
                 }
-            }
-            for note in &self.notes {
-                ui.label(note);
-            }
-        });
+                for note in &self.notes {
+                    ui.label(note);
+                }
+            },
+        );
         open
     }
 
@@ -75,7 +78,7 @@ impl ExchangeWindow {
         ui.horizontal(|ui| {
             ui.label("Format");
             let shown = self.format.map_or("what the file looks like", Format::name);
-            ComboBox::from_id_salt("format").selected_text(shown).show_ui(ui, |ui| {
+            let list = ComboBox::from_id_salt("format").selected_text(shown).show_ui(ui, |ui| {
                 if self.way == Way::In {
                     ui.selectable_value(&mut self.format, None, "what the file looks like");
                 }
@@ -83,6 +86,9 @@ impl ExchangeWindow {
                     ui.selectable_value(&mut self.format, Some(format), format.name());
                 }
             });
+            let name = format!("Format: {shown}");
+            list.response
+                .widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::ComboBox, true, &name));
         });
         let what = if self.way == Way::In { "File, or folder of labelme files" } else { "Folder" };
         ui.label(what);

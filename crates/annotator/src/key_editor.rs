@@ -21,7 +21,9 @@ impl KeyEditor {
         let mut open = true;
         let window = Window::new("Keys").open(&mut open).collapsible(false).default_width(480.0);
         window.anchor(Align2::CENTER_CENTER, [0.0, 0.0]).show(context, |ui| {
-            ui.label("Click a key, then press the one you want. A key does one thing: another command loses it.");
+            ui.label(
+                "Click a key, then press the one you want. A key does one thing: another command loses it.",
+            );
             ui.horizontal(|ui| {
                 if ui.button("All defaults").clicked() {
                     keys.reset_all();

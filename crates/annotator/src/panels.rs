@@ -124,7 +124,8 @@ mod tests {
     use super::*;
 
     fn specimen() -> Draft {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../plates/specimens/annotations/specimen-gallop.json");
+        let path =
+            concat!(env!("CARGO_MANIFEST_DIR"), "/../../plates/specimens/annotations/specimen-gallop.json");
         Document::open(std::path::Path::new(path), None).unwrap().draft().clone()
     }
 

@@ -36,8 +36,10 @@ impl SecondPass {
         if placed.is_empty() {
             return Err("Place points first; a second pass does some of them again".into());
         }
-        let drawn = Random::new(session.document.revision()).choose(placed.len().div_ceil(ONE_IN), placed.len());
-        let again = |panel: &PanelAnnotation| PanelAnnotation { keypoints: Keypoints::default(), ..panel.clone() };
+        let drawn =
+            Random::new(session.document.revision()).choose(placed.len().div_ceil(ONE_IN), placed.len());
+        let again =
+            |panel: &PanelAnnotation| PanelAnnotation { keypoints: Keypoints::default(), ..panel.clone() };
         let again: Vec<PanelAnnotation> =
             placed.iter().zip(drawn).filter(|(_, drawn)| *drawn).map(|(panel, _)| again(panel)).collect();
         let path = unused_path(session.document.annotation_path());
@@ -46,7 +48,8 @@ impl SecondPass {
         let mut document = document.map_err(|error| error.to_string())?;
         let panels = again.iter().map(|panel| panel.panel).collect();
         document.edit("Begin the second pass", |second| {
-            second.annotation = Annotation { panels: again, plate: second.annotation.plate.clone(), ..first.clone() };
+            second.annotation =
+                Annotation { panels: again, plate: second.annotation.plate.clone(), ..first.clone() };
         });
         let first_path = session.document.annotation_path().to_path_buf();
         Ok((document, Self { first, first_path, panels }))
@@ -54,9 +57,8 @@ impl SecondPass {
 
     /// What is left to do.
     pub fn headline(&self, session: &Session) -> String {
-        let empty = |panel: &&u32| {
-            session.draft().panel(**panel).is_none_or(|p| p.keypoints.iter().next().is_none())
-        };
+        let empty =
+            |panel: &&u32| session.draft().panel(**panel).is_none_or(|p| p.keypoints.iter().next().is_none());
         let left: Vec<String> = self.panels.iter().filter(empty).map(u32::to_string).collect();
         if left.is_empty() {
             "Blind second pass: all panels have points; end it in the menu Pose".into()

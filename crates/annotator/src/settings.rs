@@ -135,9 +135,13 @@ mod tests {
         settings.keys.choose(Command::Undo, egui::KeyboardShortcut::new(egui::Modifiers::NONE, egui::Key::U));
         settings.write().unwrap();
         let again = Settings::read(Some(folder.path()));
-        assert_eq!((again.theme, &again.keys, &again.recent), (Theme::Dark, &settings.keys, &settings.recent));
+        assert_eq!(
+            (again.theme, &again.keys, &again.recent),
+            (Theme::Dark, &settings.keys, &settings.recent)
+        );
         assert!(again.recent.len() == MOST_RECENT && again.recent[0].ends_with("plate-19.json"));
-        muybridge_capture::write_atomically(&folder.path().join("settings.json"), b"{\"schema\": 1, \"rec").unwrap();
+        muybridge_capture::write_atomically(&folder.path().join("settings.json"), b"{\"schema\": 1, \"rec")
+            .unwrap();
         assert_eq!(Settings::read(Some(folder.path())).theme, Theme::System);
     }
 }

@@ -15,8 +15,8 @@ use muybridge_core::Pair;
 pub use clock::{ClosedBy, StrideClock};
 pub use edit::{with_edge, with_label, with_span, without_span};
 pub(crate) use lane::stride_panels;
-pub use live::{LawDistance, LiveGait, Missing, leg_name};
 pub(crate) use live::contacts;
+pub use live::{LawDistance, LiveGait, Missing, leg_name};
 
 /// The four lanes of the footfall bar, top to bottom.
 pub const LANES: [(NearOff, Pair); 4] = [

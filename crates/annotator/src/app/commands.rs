@@ -134,11 +134,23 @@ fn session_why_not(session: &Session, command: Command) -> Option<&'static str> 
         {
             Some("Select a placed point first")
         }
-        C::PagePlate | C::Save | C::SaveAs | C::Close | C::SplitAutomatically | C::AddPanel | C::ShowMarks
-        | C::FlipFacing | C::ContactSheet => None,
+        C::PagePlate
+        | C::Save
+        | C::SaveAs
+        | C::Close
+        | C::SplitAutomatically
+        | C::AddPanel
+        | C::ShowMarks
+        | C::FlipFacing
+        | C::ContactSheet => None,
         _ if no_panel => Some("Find or draw the panels of this plate first"),
-        C::GhostPhotograph | C::ProposeTracked | C::ProposeInterpolated | C::ProposeFitted | C::ShowFit
-        | C::WorstPoint | C::CopyPrevious
+        C::GhostPhotograph
+        | C::ProposeTracked
+        | C::ProposeInterpolated
+        | C::ProposeFitted
+        | C::ShowFit
+        | C::WorstPoint
+        | C::CopyPrevious
             if session.second_pass.is_some() =>
         {
             Some("Not in a blind second pass: it would not be blind")

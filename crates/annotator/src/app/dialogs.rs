@@ -141,11 +141,9 @@ fn ask_unsaved(ui: &mut Ui) -> Option<Answer> {
     ui.label("The open plate has changes that are not saved.");
     let mut answer = None;
     ui.horizontal(|ui| {
-        for (text, choice) in [
-            ("Save them", Answer::Save),
-            ("Do not save", Answer::DoNotSave),
-            ("Cancel", Answer::Cancel),
-        ] {
+        for (text, choice) in
+            [("Save them", Answer::Save), ("Do not save", Answer::DoNotSave), ("Cancel", Answer::Cancel)]
+        {
             if ui.button(text).clicked() {
                 answer = Some(choice);
             }

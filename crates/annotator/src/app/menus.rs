@@ -44,7 +44,8 @@ impl Annotator {
         ui.set_min_width(260.0);
         for command in Command::ALL.iter().copied().filter(|command| command.description().menu == menu) {
             let why_not = self.why_not(command);
-            let button = Button::new(self.menu_title(command)).shortcut_text(self.settings.keys.shown(command));
+            let button =
+                Button::new(self.menu_title(command)).shortcut_text(self.settings.keys.shown(command));
             let response = ui.add_enabled(why_not.is_none(), button);
             if let Some(why_not) = why_not {
                 response.on_disabled_hover_text(why_not);

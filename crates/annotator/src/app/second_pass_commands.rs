@@ -41,7 +41,8 @@ impl Annotator {
             self.messages.trouble(error.to_string());
             return;
         }
-        self.messages.note(format!("The second pass is kept in {}", session.document.annotation_path().display()));
+        self.messages
+            .note(format!("The second pass is kept in {}", session.document.annotation_path().display()));
         match Document::open(&pass.first_path, self.places.journals().as_deref()) {
             Ok(document) => self.show_document(context, document),
             Err(error) => self.messages.trouble(error.to_string()),

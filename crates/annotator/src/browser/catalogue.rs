@@ -107,7 +107,8 @@ impl CatalogueList {
 
     fn start(&mut self, context: &egui::Context, catalogue: Catalogue, plate: CataloguePlate) {
         let told = Told::default();
-        let (number, folder, tell, window) = (plate.number, self.folder.clone(), told.clone(), context.clone());
+        let (number, folder, tell, window) =
+            (plate.number, self.folder.clone(), told.clone(), context.clone());
         let job = Job::start(format!("Fetching plate {number}"), context, move || {
             download(&catalogue, &plate, &folder, |text, share| {
                 if let Ok(mut told) = tell.lock() {
@@ -159,9 +160,10 @@ fn in_words(progress: &Progress) -> (String, Option<f32>) {
         Progress::Bytes { received, total } => {
             (megabytes(*received), total.map(|total| *received as f32 / total.max(1) as f32))
         }
-        Progress::Tiles { done, total, bytes } => {
-            (format!("tile {done} of {total}, {}", megabytes(*bytes)), Some(*done as f32 / (*total).max(1) as f32))
-        }
+        Progress::Tiles { done, total, bytes } => (
+            format!("tile {done} of {total}, {}", megabytes(*bytes)),
+            Some(*done as f32 / (*total).max(1) as f32),
+        ),
         Progress::Waiting { wait, cause } => (format!("again in {:.0} s: {cause}", wait.as_secs_f64()), None),
     }
 }

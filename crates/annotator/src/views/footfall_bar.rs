@@ -4,7 +4,8 @@ use egui::{Align2, Color32, CursorIcon, FontId, Rect, Response, Sense, Stroke, U
 use muybridge_capture::{Annotation, Event, NearOff, StanceLabel};
 use muybridge_core::Pair;
 use muybridge_fitting::footfalls::{
-    EdgeSource, Footfalls, LANES, ShownSpan, StrideClock, leg_name, with_edge, with_label, with_span, without_span,
+    EdgeSource, Footfalls, LANES, ShownSpan, StrideClock, leg_name, with_edge, with_label, with_span,
+    without_span,
 };
 
 use crate::app::PageContext;
@@ -50,7 +51,13 @@ pub fn show(ui: &mut Ui, session: &mut Session, columns: &Columns, _page: &mut P
         );
         let name_at = pos2(rect.left() + NAMES - 8.0, rect.center().y);
         let color = if ui.visuals().dark_mode { colors::side(leg.0) } else { ui.visuals().text_color() };
-        ui.painter().text(name_at, Align2::RIGHT_CENTER, leg_name(leg.0, leg.1), FontId::proportional(12.0), color);
+        ui.painter().text(
+            name_at,
+            Align2::RIGHT_CENTER,
+            leg_name(leg.0, leg.1),
+            FontId::proportional(12.0),
+            color,
+        );
         show_lane(ui, session, &footfalls, leg, lane, columns, first);
     }
     ui.add_space(4.0);
@@ -89,9 +96,16 @@ fn draw_columns(
 ) {
     for number in session.panel_numbers() {
         let x = columns.x(first, f64::from(number));
-        let label = session.draft().panel(number).map_or(StanceLabel::Unknown, |p| p.contacts.of(leg.0, leg.1));
+        let label =
+            session.draft().panel(number).map_or(StanceLabel::Unknown, |p| p.contacts.of(leg.0, leg.1));
         if label == StanceLabel::Unknown {
-            painter.text(pos2(x, lane.center().y), Align2::CENTER_CENTER, "?", FontId::proportional(11.0), Color32::GRAY);
+            painter.text(
+                pos2(x, lane.center().y),
+                Align2::CENTER_CENTER,
+                "?",
+                FontId::proportional(11.0),
+                Color32::GRAY,
+            );
         }
         let edge = x + 0.5 * columns.width;
         painter.vline(edge, lane.y_range(), Stroke::new(0.5, Color32::from_gray(110)));
@@ -173,14 +187,19 @@ fn show_span(
         response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Slider, true, &name));
         let by_hand = source == EdgeSource::Hand;
         let width = if by_hand { 3.0 } else { 1.5 };
-        painter.vline(x, lane.y_range(), Stroke::new(width, if by_hand { Color32::WHITE } else { Color32::GRAY }));
+        painter.vline(
+            x,
+            lane.y_range(),
+            Stroke::new(width, if by_hand { Color32::WHITE } else { Color32::GRAY }),
+        );
         if response.drag_started() {
             session.bar_drag = Some(BarDrag::Edge { leg, event, from_panel: at_panel });
         }
         follow(ui, session, &footfalls.clock, &response, columns, first);
-        response
-            .on_hover_cursor(CursorIcon::ResizeHorizontal)
-            .on_hover_text(format!("{word} at panel {at_panel:.2}, {}", if by_hand { "by hand" } else { "between labels" }));
+        response.on_hover_cursor(CursorIcon::ResizeHorizontal).on_hover_text(format!(
+            "{word} at panel {at_panel:.2}, {}",
+            if by_hand { "by hand" } else { "between labels" }
+        ));
     }
 }
 

@@ -24,7 +24,13 @@ pub fn canvas(ui: &mut Ui, session: &mut Session, _page: &mut PageContext<'_>) {
     let size_px = match session.images.states().get(image) {
         Some(ImageState::Ready(pyramid)) => pyramid.size_px(),
         Some(ImageState::Failed(trouble)) => {
-            painter.text(rect.center(), Align2::CENTER_CENTER, trouble, FontId::proportional(14.0), Color32::GRAY);
+            painter.text(
+                rect.center(),
+                Align2::CENTER_CENTER,
+                trouble,
+                FontId::proportional(14.0),
+                Color32::GRAY,
+            );
             session.draft().manifest.images.get(image).map_or([1, 1], |i| [i.width_px, i.height_px])
         }
         _ => session.draft().manifest.images.get(image).map_or([1, 1], |i| [i.width_px, i.height_px]),
@@ -66,7 +72,11 @@ fn draw_panel(ui: &Ui, painter: &egui::Painter, session: &Session, panel: &Panel
     let font = FontId::proportional(if selected { 18.0 } else { 15.0 });
     let galley = painter.layout_no_wrap(panel.panel.to_string(), font, Color32::WHITE);
     let at = corners[0] + Vec2::new(6.0, 4.0);
-    painter.rect_filled(Rect::from_min_size(at, galley.size()).expand(3.0), 3.0, Color32::from_black_alpha(170));
+    painter.rect_filled(
+        Rect::from_min_size(at, galley.size()).expand(3.0),
+        3.0,
+        Color32::from_black_alpha(170),
+    );
     painter.galley(at, galley, Color32::WHITE);
 }
 
@@ -231,13 +241,15 @@ impl Words {
 
 fn gait(ui: &mut Ui, session: &mut Session) {
     let now = session.draft().manifest.gait;
-    egui::ComboBox::from_id_salt("gait").selected_text(now.to_string()).show_ui(ui, |ui| {
+    let list = egui::ComboBox::from_id_salt("gait").selected_text(now.to_string()).show_ui(ui, |ui| {
         for gait in Gait::ALL {
             if ui.selectable_label(now == gait, gait.to_string()).clicked() {
                 session.edit("Gait of the title", |draft| draft.manifest.gait = gait);
             }
         }
     });
+    let name = format!("Gait of the title: {now}");
+    list.response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::ComboBox, true, &name));
 }
 
 /// Brightness for looking, not for the files.

@@ -39,7 +39,7 @@ fn hint(canvas: &PanelCanvas, session: &Session, page: &PageContext<'_>) {
         (Tool::Guided | Tool::Free, Some(keypoint)) => {
             let state = match session.next_state {
                 KeypointState::Occluded => ", occluded",
-                        KeypointState::Visible | KeypointState::Absent => "",
+                KeypointState::Visible | KeypointState::Absent => "",
             };
             format!("Click: {}{state}. {}", colors::name(keypoint), where_it_is(keypoint))
         }
@@ -59,7 +59,12 @@ fn hint(canvas: &PanelCanvas, session: &Session, page: &PageContext<'_>) {
     );
     let rect = canvas.painter.clip_rect();
     let font = egui::FontId::proportional(13.0);
-    let galley = canvas.painter.layout(format!("{text}\n{state_keys}"), font, egui::Color32::WHITE, rect.width() - 40.0);
+    let galley = canvas.painter.layout(
+        format!("{text}\n{state_keys}"),
+        font,
+        egui::Color32::WHITE,
+        rect.width() - 40.0,
+    );
     let at = rect.left_top() + egui::vec2(12.0, 10.0);
     let back = egui::Rect::from_min_size(at, galley.size()).expand(6.0);
     canvas.painter.rect_filled(back, 4.0, egui::Color32::from_black_alpha(170));
@@ -158,7 +163,8 @@ fn panel_use(ui: &mut Ui, session: &mut Session) {
     let now = session.panel_annotation().map_or(U::Stride, |panel| panel.usage);
     ui.horizontal(|ui| {
         ui.label("This panel is");
-        for (usage, title) in [(U::Stride, "of the stride"), (U::Standing, "standing"), (U::Unused, "unused")] {
+        for (usage, title) in [(U::Stride, "of the stride"), (U::Standing, "standing"), (U::Unused, "unused")]
+        {
             if ui.selectable_label(now == usage, title).clicked() {
                 session.edit("Use of a panel", |draft| draft.panel_mut(panel).usage = usage);
             }

@@ -60,9 +60,7 @@ pub fn thumbnail(ui: &Ui, session: &mut Session, number: u32, rect: Rect) {
     let response = ui.interact(rect, ui.scope_id().with(("panel", number)), Sense::click());
     let name = format!("Panel {number}");
     let selected = session.panel == number;
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::accesskit::Role::Button, true, selected, &name)
-    });
+    response.widget_info(|| egui::WidgetInfo::selected(egui::accesskit::Role::Button, true, selected, &name));
     let photograph = Rect::from_min_max(rect.min, rect.max - vec2(0.0, 16.0));
     let painter = ui.painter_at(rect);
     painter.rect_filled(photograph, 0.0, ui.visuals().extreme_bg_color);
@@ -107,7 +105,9 @@ fn draw_photograph(painter: &egui::Painter, session: &mut Session, number: u32, 
 
 /// The points of a panel as thin lines over its small photograph.
 fn draw_figure(painter: &egui::Painter, session: &Session, number: u32, into: Rect) {
-    let (Some(panel), Some(place)) = (session.draft().panel(number), session.place_of(number)) else { return };
+    let (Some(panel), Some(place)) = (session.draft().panel(number), session.place_of(number)) else {
+        return;
+    };
     let Some(transform) = muybridge_imaging::PanelTransform::new(place.quad_px, [1.0, 1.0]) else { return };
     let screen = |at_px: [f64; 2]| -> Pos2 {
         let [u, v] = transform.panel_from_plate(at_px);

@@ -71,7 +71,9 @@ fn show_points(ui: &mut Ui, canvas: &PanelCanvas, session: &mut Session) {
         draw_point(canvas, at, keypoint, placed, session.selected == Some(keypoint) || response.hovered());
         if response.clicked() {
             // Near and off joints lie close together: a click places what is asked for, also beside another point.
-            let asked = session.selected.filter(|next| session.tool == Tool::Guided && keypoints.get(*next).is_none());
+            let asked = session
+                .selected
+                .filter(|next| session.tool == Tool::Guided && keypoints.get(*next).is_none());
             match asked {
                 Some(next) => place_at(canvas, session, next, &response),
                 None => session.selected = Some(keypoint),
@@ -251,7 +253,12 @@ fn draw_point(canvas: &PanelCanvas, at: Pos2, keypoint: Keypoint, placed: &Place
 
 fn draw_joint(canvas: &PanelCanvas, at: Pos2, keypoint: Keypoint, strong: bool) {
     let radius = if strong { 6.0 } else { 4.0 };
-    canvas.painter.circle(at, radius, Color32::from_black_alpha(140), Stroke::new(2.0, colors::keypoint(keypoint)));
+    canvas.painter.circle(
+        at,
+        radius,
+        Color32::from_black_alpha(140),
+        Stroke::new(2.0, colors::keypoint(keypoint)),
+    );
 }
 
 /// The bones through the plate's camera, off legs first; joints at their limit in white.

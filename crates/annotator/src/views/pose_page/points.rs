@@ -7,7 +7,13 @@ use muybridge_fitting::posing::{PanelPose, PanelPoser};
 const UNMOVED_PX: f64 = 0.2;
 
 /// Puts a point where a person says.
-pub(super) fn place(draft: &mut Draft, panel: u32, keypoint: Keypoint, at_px: [f64; 2], state: KeypointState) {
+pub(super) fn place(
+    draft: &mut Draft,
+    panel: u32,
+    keypoint: Keypoint,
+    at_px: [f64; 2],
+    state: KeypointState,
+) {
     let placed = Placed { at_px: Some(at_px), state, by: PlacedBy::Hand };
     draft.panel_mut(panel).keypoints.insert(keypoint, placed);
 }
