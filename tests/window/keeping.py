@@ -195,8 +195,7 @@ class Person(Maker):
         )
 
     def leave(self):
-        """Ends the program."""
+        """Saves and ends the program."""
+        self.save()
         self.program.key("ctrl+q")
-        if self.program.find("Do not save"):
-            self.program.click("Do not save")
         self.check(self.program.ended() == 0, "the program ends")

@@ -1,5 +1,6 @@
 """What the scripted person does in the annotator, step by step; first part: from a picture to an annotation."""
 
+import itertools
 import math
 import re
 import shutil
@@ -337,7 +338,12 @@ class Maker:
         self.photograph("contacts")
         self.save()
         now = {p["panel"]: p["contacts"] for p in self.annotation()["panels"]}
-        self.check(now == seen, "every label is as told")
+        wrong = [
+            f"panel {panel} {lane} is {now.get(panel, {}).get(lane)}"
+            for panel, lane in itertools.product(seen, LANES)
+            if now.get(panel, {}).get(lane) != seen[panel][lane]
+        ]
+        self.check(not wrong, f"every label is as told {', '.join(wrong)}")
         edge = next(w for w in program.widgets() if " lift-off " in w.name and 300 < w.middle()[0] < 900)
         at = edge.middle()
         program.drag(at, [at[0] + 12, at[1]])
