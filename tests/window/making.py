@@ -3,11 +3,10 @@
 import itertools
 import math
 import re
-import shutil
 import statistics
 import time
 
-from desktop import Failure, Program, read_json
+from desktop import Program, read_json
 
 # Share of the canvas that a whole panel fills (crates/annotator/src/canvas.rs).
 FILLED = 0.94
@@ -19,8 +18,9 @@ HIT_PX = 1.0
 LANES = ("near_fore", "off_fore", "near_hind", "off_hind")
 # Panels of a plate, here.
 PANELS = 12
-# Idle is measured for so long, s; messages are gone after this, s.
-IDLE_S, MESSAGES_S = 10.0, 8.0
+# Messages are gone after this, s.
+MESSAGES_S = 7.0
+# Panels of a plate, here.
 
 
 class Maker:
@@ -175,7 +175,7 @@ class Maker:
         """Types into fields at the right, wherever they are."""
         program = self.program
         x0, _, x1, y1 = program.see("Photograph", role="canvas").bounds
-        inside = [x1 + 150, 640]
+        inside = [x1 + 150, 700]
         for name, text in numbers:
             if name.startswith("= "):
                 shown, chosen = name[2:], text
@@ -271,6 +271,8 @@ class Maker:
         program.key("k")
         hock = program.see("near hock", role="button").middle()
         before = program.see("near hind hoof", role="button").middle()
+        # Until the messages are gone.
+        time.sleep(MESSAGES_S)
         shown = lambda: self.photograph("skeleton")
         program.drag(hock, [hock[0] - 45, hock[1] - 30], steps=12, held=shown)
         after = program.see("near hind hoof", role="button").middle()
@@ -303,9 +305,10 @@ class Maker:
         program = self.program
         program.key("comma", "g", "shift+g", "h")
         self.photograph("ghosts")
-        program.key("shift+g", "h", "Tab")
+        program.key("shift+g", "h", "a")
         self.photograph("sheet")
-        program.key("Tab")
+        self.check(not program.find("Photograph", role="canvas"), "A shows all panels at once")
+        program.key("a")
         for _ in range(PANELS):
             program.key("period")
         self.check(program.find(f"Panel 3 of {PANELS}"), "twelve steps lead round the stride")

@@ -106,6 +106,7 @@ def use(screen, program, out, plate, picture, truth, whole):
     """One plate from the bare picture on; what was not as it should be."""
     with tempfile.TemporaryDirectory() as folder:
         shutil.copy(picture, Path(folder) / f"{plate}.jpg")
+        shutil.copy(ROOT / "plates/catalogue.toml", folder)
         person = keeping.Person(screen, program, Path(folder), out, plate, desktop.read_json(truth))
         try:
             for step in story(person, plate, whole):

@@ -191,6 +191,8 @@ fn drags_the_skeleton_and_marks_a_footfall(person: &mut Person) {
     let before = person.draft();
     let hock = person.handle("near hock");
     person.drag(hock, hock - vec2(30.0, 20.0));
+    let reached = person.handle("near hock");
+    assert!(reached.distance(hock - vec2(30.0, 20.0)) < 1.0, "the joint is under the pointer: {reached:?}");
     let hoof = Keypoint::hoof(NearOff::Near, Pair::Hind);
     let place = |draft: &Draft| draft.panel(2).unwrap().keypoints.place(hoof).unwrap();
     let (was, is) = (place(&before), place(&person.draft()));

@@ -135,8 +135,9 @@ fn on_lane(
         };
         edit(session, "Contact label", |annotation| with_label(annotation, clock, leg, panel, next), panel);
     }
+    // A drag begins a little after the button went down, when the pointer has moved on.
     if response.drag_started()
-        && let Some(at) = response.interact_pointer_pos()
+        && let Some(at) = ui.input(|input| input.pointer.press_origin())
     {
         session.bar_drag = Some(BarDrag::Span { leg, from_panel: at_panel(at) });
     }

@@ -62,6 +62,11 @@ fn pointer_px(ui: &Ui, canvas: &PanelCanvas) -> Option<[f64; 2]> {
     ui.input(|input| input.pointer.latest_pos()).map(|at| canvas.view.plate_from_screen(at))
 }
 
+/// Where the button went down, on the plate, px: a drag begins a little later, when the pointer has moved on.
+fn pressed_px(ui: &Ui, canvas: &PanelCanvas) -> Option<[f64; 2]> {
+    ui.input(|input| input.pointer.press_origin()).map(|at| canvas.view.plate_from_screen(at))
+}
+
 fn show_points(ui: &mut Ui, canvas: &PanelCanvas, session: &mut Session) {
     let keypoints = session.panel_annotation().map(|panel| panel.keypoints.clone()).unwrap_or_default();
     for (keypoint, placed) in keypoints.iter() {
@@ -80,7 +85,7 @@ fn show_points(ui: &mut Ui, canvas: &PanelCanvas, session: &mut Session) {
             }
         }
         if response.drag_started_by(egui::PointerButton::Primary)
-            && let Some([x, y]) = response.interact_pointer_pos().map(|at| canvas.view.plate_from_screen(at))
+            && let Some([x, y]) = pressed_px(ui, canvas)
         {
             session.selected = Some(keypoint);
             let grasp_px = [at_px[0] - x, at_px[1] - y];
@@ -140,7 +145,7 @@ fn show_skeleton(ui: &mut Ui, canvas: &PanelCanvas, session: &mut Session) {
             session.selected = Some(keypoint);
         }
         if response.drag_started_by(egui::PointerButton::Primary)
-            && let Some([x, y]) = response.interact_pointer_pos().map(|at| canvas.view.plate_from_screen(at))
+            && let Some([x, y]) = pressed_px(ui, canvas)
         {
             session.selected = Some(keypoint);
             let whole = ui.input(|input| input.modifiers.shift);
@@ -176,9 +181,8 @@ fn whole_skeleton(
     let square = Rect::from_center_size(at, Vec2::splat(11.0));
     canvas.painter.rect(square, 2.0, fill, Stroke::new(1.5, Color32::BLACK), egui::StrokeKind::Outside);
     if response.drag_started_by(egui::PointerButton::Primary)
-        && let Some(from) = response.interact_pointer_pos()
+        && let Some(from_px) = pressed_px(ui, canvas)
     {
-        let from_px = canvas.view.plate_from_screen(from);
         session.pose_drag = Some(PoseDrag::Whole { before: Box::new(*before), from_px });
     }
     follow(ui, canvas, session, &response);
