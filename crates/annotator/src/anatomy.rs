@@ -91,13 +91,15 @@ impl AnatomyPicture {
         });
         let painter = ui.painter_at(rect);
         let to_screen = self.to_screen(rect);
-        self.draw_flesh(&painter, &to_screen, ui.visuals().dark_mode);
+        let dark = ui.visuals().dark_mode;
+        self.draw_flesh(&painter, &to_screen, dark);
         for pair in colors::edges() {
             let ends = pair.map(|keypoint| to_screen(self.places[keypoint.index()]));
-            painter.line_segment(ends, Stroke::new(1.5, colors::keypoint(pair[1])));
+            painter.line_segment(ends, Stroke::new(1.5, colors::on_background(pair[1], dark)));
         }
         for keypoint in Keypoint::all() {
-            let (at, color) = (to_screen(self.places[keypoint.index()]), colors::keypoint(keypoint));
+            let (at, color) =
+                (to_screen(self.places[keypoint.index()]), colors::on_background(keypoint, dark));
             if placed(keypoint) {
                 painter.circle_filled(at, 3.5, color);
             } else {

@@ -36,6 +36,13 @@ pub fn keypoint(keypoint: Keypoint) -> Color32 {
     }
 }
 
+/// Colour of a point on the background of the window: darker on a light one.
+pub fn on_background(keypoint: Keypoint, dark: bool) -> Color32 {
+    let darken = if matches!(keypoint, Keypoint::Body(_)) { 0.6 } else { 0.4 };
+    let color = self::keypoint(keypoint);
+    if dark { color } else { color.lerp_to_gamma(Color32::BLACK, darken) }
+}
+
 /// Pairs of points that are joined by a line.
 pub fn edges() -> impl Iterator<Item = [Keypoint; 2]> {
     use BodyPoint as B;

@@ -122,7 +122,9 @@ impl ExchangeWindow {
             write_atomically(path, content).map_err(|error| error.to_string())?;
         }
         self.notes = exported.notes;
-        Ok(format!("{} files written to {}", files.len(), folder.display()))
+        let count = files.len();
+        let word = if count == 1 { "file" } else { "files" };
+        Ok(format!("{count} {word} written to {}", folder.display()))
     }
 
     fn take_in(&mut self, session: &mut Session) -> Result<String, String> {

@@ -76,7 +76,7 @@ impl Messages {
         };
         context.request_repaint_after(std::time::Duration::from_secs_f64((next_s - now_s).max(0.05)));
         let area = Area::new(Id::unique("messages")).interactable(false);
-        area.anchor(Align2::CENTER_BOTTOM, vec2(0.0, -150.0)).show(context, |ui| {
+        area.anchor(Align2::LEFT_BOTTOM, vec2(12.0, -170.0)).show(context, |ui| {
             for message in latest {
                 let color = match message.weight {
                     Weight::Note => ui.visuals().text_color(),

@@ -178,6 +178,11 @@ impl Document {
         self.revision
     }
 
+    /// Whether the annotation has never been saved.
+    pub fn is_new(&self) -> bool {
+        self.on_disk.annotation.is_none()
+    }
+
     /// Whether there is something to save.
     pub fn is_changed(&self) -> bool {
         self.draft != self.saved

@@ -198,10 +198,15 @@ fn trunk_advance(panels: &[&PanelAnnotation], cameras: &[PanelCamera]) -> Vec<f6
     places.iter().map(|place| place - start).collect()
 }
 
-/// Panels without any trunk point take the straight line between their neighbours.
+/// Panels without any trunk point take the straight line between their neighbours; before the first and after the last
+/// that have some, the mean advance goes on. So speed and distance are right before every panel is posed.
 fn fill_gaps(places: &mut [f64]) {
     let known: Vec<(usize, f64)> =
         places.iter().copied().enumerate().filter(|(_, place)| place.is_finite()).collect();
+    let mean_advance = match (known.first(), known.last()) {
+        (Some(&(a, xa)), Some(&(b, xb))) if b > a => (xb - xa) / (b - a) as f64,
+        _ => 0.0,
+    };
     for i in 0..places.len() {
         if places[i].is_finite() {
             continue;
@@ -210,7 +215,7 @@ fn fill_gaps(places: &mut [f64]) {
         let after = known.iter().find(|(k, _)| *k > i);
         places[i] = match (before, after) {
             (Some(&(a, xa)), Some(&(b, xb))) => xa + (xb - xa) * (i - a) as f64 / (b - a) as f64,
-            (Some(&(_, x)), None) | (None, Some(&(_, x))) => x,
+            (Some(&(a, x)), None) | (None, Some(&(a, x))) => x + mean_advance * (i as f64 - a as f64),
             (None, None) => 0.0,
         };
     }
@@ -221,9 +226,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn panels_without_trunk_points_are_interpolated() {
+    fn panels_without_trunk_points_follow_the_others() {
         let mut places = [f64::NAN, 1.0, f64::NAN, f64::NAN, 4.0, f64::NAN];
         fill_gaps(&mut places);
-        assert_eq!(places, [1.0, 1.0, 2.0, 3.0, 4.0, 4.0]);
+        assert_eq!(places, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        let mut alone = [f64::NAN, 3.0];
+        fill_gaps(&mut alone);
+        assert_eq!(alone, [3.0, 3.0]);
     }
 }

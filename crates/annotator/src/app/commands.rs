@@ -143,6 +143,9 @@ fn session_why_not(session: &Session, command: Command) -> Option<&'static str> 
         | C::ShowMarks
         | C::FlipFacing
         | C::ContactSheet => None,
+        C::ZoomIn | C::ZoomOut if session.page == Page::Plate => {
+            Some("Zoom with the wheel on the Plate page")
+        }
         _ if no_panel => Some("Find or draw the panels of this plate first"),
         C::GhostPhotograph
         | C::ProposeTracked

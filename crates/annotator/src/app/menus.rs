@@ -76,7 +76,11 @@ impl Annotator {
     /// Name of the plate, whether it is saved, and what is under way.
     fn status(&self, ui: &mut Ui) {
         if let Some(session) = &self.session {
-            let mark = if session.document.is_changed() { "not saved" } else { "saved" };
+            let mark = match (session.document.is_changed(), session.document.is_new()) {
+                (true, _) => "not saved",
+                (false, true) => "new",
+                (false, false) => "saved",
+            };
             ui.label(RichText::new(mark).weak());
             let path = session.document.annotation_path();
             let name = path.file_stem().unwrap_or_default().to_string_lossy();

@@ -5,7 +5,7 @@ use egui::Context;
 use muybridge_capture::{Draft, Keypoint, KeypointState, PanelAnnotation, Placed, PlacedBy};
 use muybridge_fitting::posing::{SequencePanel, interpolate};
 
-use crate::session::{Page, Session};
+use crate::session::{Page, Session, Tool};
 
 /// Fewest points of a panel from which another is tracked.
 const LEAST_KNOWN: usize = 6;
@@ -126,6 +126,11 @@ impl Session {
     pub(super) fn take_proposed(&mut self, label: &str, panel: u32, points: &[(Keypoint, Placed)]) {
         self.edit(label, |draft| take_over(draft, panel, points));
         self.page = Page::Pose;
+        // What was asked for may have its place now.
+        if self.tool == Tool::Guided && self.panel == panel {
+            self.selected = None;
+            self.select_unplaced();
+        }
     }
 }
 

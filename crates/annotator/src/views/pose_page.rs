@@ -181,7 +181,8 @@ fn point_list(ui: &mut Ui, session: &mut Session) {
     Grid::new("points").num_columns(4).striped(true).spacing([8.0, 2.0]).show(ui, |ui| {
         for keypoint in Keypoint::all() {
             let placed = keypoints.get(keypoint);
-            let name = RichText::new(colors::name(keypoint)).color(row_color(ui, keypoint));
+            let name = RichText::new(colors::name(keypoint))
+                .color(colors::on_background(keypoint, ui.visuals().dark_mode));
             if ui.selectable_label(session.selected == Some(keypoint), name).clicked() {
                 chosen = Some(keypoint);
             }
@@ -202,16 +203,6 @@ fn point_list(ui: &mut Ui, session: &mut Session) {
     });
     if chosen.is_some() {
         session.selected = chosen;
-    }
-}
-
-/// Colour of a name in the list: readable on light backgrounds, too.
-fn row_color(ui: &Ui, keypoint: Keypoint) -> egui::Color32 {
-    let color = colors::keypoint(keypoint);
-    match (ui.visuals().dark_mode, keypoint) {
-        (true, _) => color,
-        (false, Keypoint::Body(_)) => ui.visuals().text_color(),
-        (false, Keypoint::Limb(..)) => color.lerp_to_gamma(egui::Color32::BLACK, 0.4),
     }
 }
 

@@ -271,6 +271,10 @@ fn draw_skeleton(canvas: &PanelCanvas, poser: &PanelPoser, pose: &PanelPose) {
     let limits: Vec<usize> = poser.at_limits(pose).into_iter().map(|(bone, _)| bone).collect();
     let mut bones: Vec<_> = poser.bones_px(pose).into_iter().enumerate().collect();
     bones.sort_by_key(|(_, bone)| bone.side != Some(NearOff::Off));
+    let tail =
+        [BodyPoint::Croup, BodyPoint::Dock].map(|point| poser.keypoint_px(pose, Keypoint::Body(point)));
+    let tail = tail.map(|at| canvas.view.screen_from_plate(at));
+    canvas.painter.line_segment(tail, Stroke::new(2.6, colors::TRUNK));
     for (index, bone) in bones {
         let ends = bone.ends_px.map(|at| canvas.view.screen_from_plate(at));
         let color = bone.side.map_or(colors::TRUNK, colors::side);
