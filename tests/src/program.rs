@@ -58,7 +58,10 @@ fn build() -> PathBuf {
     };
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(cargo);
-    command.args(["build", "--quiet", "-p", "muybridge-cli", "--bins", "--profile", profile, "--target-dir"]);
+    // With the tests beside them, as `cargo test` has built everything: any other choice of packages has other features, and
+    // would compile half the dependencies once more.
+    let targets = ["--workspace", "--tests", "--bins"];
+    command.args(["build", "--quiet"]).args(targets).args(["--profile", profile, "--target-dir"]);
     command.arg(folder.parent().map_or(Path::new("target"), |target| target)).current_dir(repository());
     Run::of(&mut command).expect_code(0);
     folder.to_path_buf()

@@ -209,6 +209,10 @@ impl Session {
     /// Takes over what was found in the background.
     pub fn finish_background_work(&mut self, messages: &mut Messages) {
         self.images.poll();
+        // A drag goes on from the documents as they were when it began.
+        if self.is_dragging() {
+            return;
+        }
         self.fit.finish();
         match self.proposals.finish(messages) {
             Some(Found::Points(panel, proposals)) if proposals.is_empty() => {
