@@ -237,12 +237,12 @@ impl Annotator {
     fn take_opened(&mut self, context: &Context, opened: Opened) {
         match opened {
             Opened::Document(document, troubles) => {
-                if self.session.as_ref().is_some_and(|session| session.document.is_changed()) {
-                    self.dialog = Some(Dialog::Unsaved(After::Show(document)));
-                    return;
-                }
                 troubles.into_iter().for_each(|trouble| self.messages.trouble(trouble));
-                self.show_document(context, *document);
+                if self.has_unsaved_work() {
+                    self.dialog = Some(Dialog::Unsaved(After::Show(document)));
+                } else {
+                    self.show_document(context, *document);
+                }
             }
             Opened::Waiting(waiting) => self.dialog = Some(Dialog::Recover(vec![waiting])),
             Opened::Folder(folder) => self.browser = Some(Browser::new(&folder)),
@@ -267,9 +267,24 @@ impl Annotator {
         self.session = Some(session);
     }
 
-    /// Closes the open plate, whose changes are saved or not wanted.
+    /// Whether the open plate has changes that are not saved, what is being typed or dragged among them.
+    fn has_unsaved_work(&mut self) -> bool {
+        self.session.as_mut().is_some_and(|session| {
+            session.commit();
+            session.document.is_changed()
+        })
+    }
+
+    /// Closes the open plate. Its journal stays where it has changes, and is offered again.
     fn close_session(&mut self) {
-        self.exchange = None;
+        if !self.has_unsaved_work() {
+            self.discard_session();
+        }
+        (self.session, self.exchange) = (None, None);
+    }
+
+    /// Closes the open plate and forgets its changes: the person has said so.
+    fn discard_session(&mut self) {
         if let Some(session) = self.session.take() {
             session.document.close();
         }

@@ -103,8 +103,7 @@ impl Annotator {
 
     /// Leaves the open plate for something else, after asking about unsaved work.
     pub(super) fn leave(&mut self, context: &Context, after: After) {
-        let unsaved = self.session.as_ref().is_some_and(|session| session.document.is_changed());
-        if unsaved && !matches!(after, After::Open(_) | After::OpenSpecimen) {
+        if !matches!(after, After::Open(_) | After::OpenSpecimen) && self.has_unsaved_work() {
             self.dialog = Some(Dialog::Unsaved(after));
         } else {
             self.go_on(context, after);

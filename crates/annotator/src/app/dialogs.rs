@@ -72,7 +72,10 @@ impl Annotator {
         match (dialog, answer) {
             (Dialog::Recover(waiting), answer) => self.take_recovery(context, waiting, answer),
             (Dialog::Unsaved(after), Answer::Save) => self.save(context, false, after),
-            (Dialog::Unsaved(after), Answer::DoNotSave) => self.go_on(context, after),
+            (Dialog::Unsaved(after), Answer::DoNotSave) => {
+                self.discard_session();
+                self.go_on(context, after);
+            }
             (Dialog::Unsaved(After::Show(document)), _) => document.close(),
             (Dialog::Overwrite { save_as: None, after, .. }, Answer::Overwrite) => {
                 self.save(context, true, after);

@@ -109,11 +109,10 @@ impl Annotator {
     /// Holds the window while there is something to save.
     pub(super) fn watch_closing(&mut self, context: &Context) {
         let asked = context.input(|input| input.viewport().close_requested());
-        let unsaved = self.session.as_ref().is_some_and(|session| session.document.is_changed());
         if !asked || self.may_close {
             return;
         }
-        if unsaved {
+        if self.has_unsaved_work() {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
             self.dialog = Some(Dialog::Unsaved(After::Quit));
         } else {
