@@ -12,6 +12,7 @@ use muybridge_core::{Database, Skeleton};
 use muybridge_fitting::contacts::find_contacts;
 use muybridge_fitting::fit_document::FitDocument;
 use muybridge_fitting::gait_analysis::GaitAnalysis;
+use muybridge_fitting::gait_laws::Evidence;
 use muybridge_fitting::motion_database::build_database;
 use muybridge_fitting::observation::StrideObservation;
 use muybridge_fitting::pipeline::{PlateFit, fit_plate};
@@ -107,7 +108,8 @@ fn require_finite(fitted: &PlateFit) -> Result<(), TestCaseError> {
     prop_assert!(numbers.iter().all(|number| number.is_finite()), "{numbers:?}");
 
     let skeleton = Skeleton::reference();
-    let database = build_database(std::slice::from_ref(fitted), &skeleton);
+    let database =
+        build_database(&Evidence { fits: std::slice::from_ref(fitted), ..Evidence::default() }, &skeleton);
     for stride in &database.strides {
         let curves = stride.curves.channels().flatten().all(|value| value.is_finite());
         prop_assert!(curves && stride.prints_m.iter().all(|x| x.is_finite()), "stride {}", stride.id);

@@ -99,7 +99,13 @@ impl Derived {
         let clock = StrideClock::new(annotation, calibration, stride_time);
         let footfalls = Footfalls::new(annotation, clock);
         let withers_height_m = fitted.map(|fitted| fitted.plate.withers_height_m);
-        self.gait = LiveGait::new(&footfalls, manifest, calibration, withers_height_m, &self.laws);
+        self.gait = LiveGait::new(
+            &footfalls,
+            (manifest, annotation.gait(manifest)),
+            calibration,
+            withers_height_m,
+            &self.laws,
+        );
         self.footfalls = Some(footfalls);
         if !dragging {
             self.concerns = before_fit(annotation, manifest, self.calibration.as_ref().ok());

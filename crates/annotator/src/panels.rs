@@ -170,7 +170,7 @@ mod tests {
         let new = draft.manifest.panels.last().unwrap().clone();
         assert_eq!((draft.manifest.panels.len(), draft.annotation.stride.last), (count + 1, new.panel));
         let at_px = Some(new.centre_px());
-        let placed = Placed { at_px, state: KeypointState::Visible, by: PlacedBy::Hand };
+        let placed = Placed { at_px, state: KeypointState::Visible, by: PlacedBy::Hand, sd_px: None };
         draft.panel_mut(new.panel).keypoints.insert(Keypoint::all().next().unwrap(), placed);
         delete(&mut draft, new.panel);
         assert!(draft.panel(new.panel).is_none() && draft.manifest.panels.len() == count);

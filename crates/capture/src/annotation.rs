@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use muybridge_core::Pair;
+use muybridge_core::{Gait, Pair};
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::keypoint::{Keypoint, NearOff};
+use crate::manifest::Manifest;
 
 /// Schema version of an annotation file.
 pub const ANNOTATION_SCHEMA: u32 = 1;
@@ -29,6 +30,9 @@ pub struct Annotation {
     pub visible_sd_px: f64,
     /// The same for an occluded point, px.
     pub occluded_sd_px: f64,
+    /// The gait that the footfalls show, where it is not the title's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gait: Option<Gait>,
     /// The panels that make up the stride.
     pub stride: StrideSpan,
     /// Free text.
@@ -38,6 +42,13 @@ pub struct Annotation {
     /// Contact instants a person placed between panels; they override what is found from the fit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub instants: Vec<Instant>,
+}
+
+impl Annotation {
+    /// The gait of the stride: as the person judged it from the footfalls, else as titled.
+    pub fn gait(&self, manifest: &Manifest) -> Gait {
+        self.gait.unwrap_or(manifest.gait)
+    }
 }
 
 /// Which panels show the stride.
@@ -228,6 +239,10 @@ pub struct Placed {
     pub state: KeypointState,
     /// By whom.
     pub by: PlacedBy,
+    /// Standard deviation of a coordinate of this very point, px, where it is known, as of a mean over strides; otherwise the
+    /// annotation's for its state holds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sd_px: Option<f64>,
 }
 
 impl Placed {
@@ -319,7 +334,10 @@ mod tests {
         let mut keypoints = Keypoints::default();
         for (i, keypoint) in Keypoint::all().enumerate() {
             let state = if i % 3 == 0 { KeypointState::Occluded } else { KeypointState::Visible };
-            keypoints.insert(keypoint, Placed { at_px: Some([i as f64, 1.0]), state, by: PlacedBy::Hand });
+            keypoints.insert(
+                keypoint,
+                Placed { at_px: Some([i as f64, 1.0]), state, by: PlacedBy::Hand, sd_px: None },
+            );
         }
         // One point that only one side has.
         keypoints.remove(Keypoint::hoof(NearOff::Off, Pair::Fore));

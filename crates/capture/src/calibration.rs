@@ -3,9 +3,12 @@
 use muybridge_core::SpeedSource;
 
 use crate::annotation::{Annotation, PanelAnnotation, PanelUse};
+use crate::even_advance::{advance_px, trunk_ahead_px};
 use crate::keypoint::{BodyPoint, Keypoint};
 use crate::line::GroundLine;
-use crate::manifest::{Calibration, Facing, KnownLength, Manifest, Parallax, Plane, Position, ScaleSource};
+use crate::manifest::{
+    Calibration, Facing, Known, KnownLength, Manifest, Parallax, Plane, Position, ScaleSource,
+};
 use crate::parallax::scale_ratio_from_stance;
 use crate::timing::panel_times;
 
@@ -115,7 +118,8 @@ pub struct PlateCalibration {
     pub scale_relative_sd: f64,
     /// Scale on the track over scale on the wall, where a wall is the source.
     pub parallax: Option<Estimate>,
-    /// Withers height that follows from the scale, from the standing panels, m.
+    /// Withers height that follows from the scale, m: from the standing panels, else the mean over the stride's, which is within
+    /// a few hundredths of the standing height at any gait.
     pub withers_height_m: Option<Estimate>,
     /// Every quantity that two sources speak of.
     pub disagreements: Vec<Disagreement>,
@@ -160,10 +164,21 @@ pub enum CalibrationError {
         "calibration.scale: no hoof is labelled stance in two neighbouring panels, so the parallax cannot be measured from stance; give distances or a ratio"
     )]
     NoStance,
+    /// The advance of the trunk asked from stance, but no hoof is seen twice.
+    #[error(
+        "calibration.position: no hoof is labelled stance in two neighbouring panels, so the advance of the trunk cannot be measured; say it (per_panel_m)"
+    )]
+    NoAdvance,
+    /// A speed asked by dynamic similarity, but something it follows from is missing.
+    #[error("calibration.time: the speed cannot be inferred by dynamic similarity: {0}")]
+    NoSimilarity(&'static str),
     /// The numbers contradict each other so far that no camera results.
     #[error("calibration: {0}")]
     Contradiction(String),
 }
+
+/// Relative difference between the withers' mean height over a stride and standing: a few hundredths at any gait.
+const MOVING_WITHERS_SD: f64 = 0.03;
 
 /// Scale on a panel's marks: px per metre and the px (along the ground line) of mark zero.
 #[derive(Clone, Copy)]
@@ -228,6 +243,7 @@ impl<'a> Context<'a> {
         let centre = ground.along_and_above(centre_px)[0];
         match &self.calibration.position {
             Position::FixedCamera => Ok((centre, AxisOrigin::At(0.0))),
+            Position::EvenAdvance { .. } => Ok((centre, AxisOrigin::TrunkAt(panel.panel, index))),
             Position::FixedMark { mark } => {
                 let at =
                     panel.marks.iter().find(|m| m.mark == *mark).map(|m| ground.along_and_above(m.at_px)[0]);
@@ -257,6 +273,8 @@ enum AxisOrigin {
     At(f64),
     /// The track's origin is seen this many px from the axis.
     PxFromAxis(f64),
+    /// Where the trunk of this panel is as many even advances on as the number says.
+    TrunkAt(u32, f64),
 }
 
 /// Calibrates a validated plate.
@@ -272,13 +290,13 @@ pub fn calibrate(manifest: &Manifest, annotation: &Annotation) -> Result<PlateCa
     let mut disagreements = scales.disagreements.clone();
     let mut stride = context.cameras(&context.stride_panels(), &scales)?;
     let standing = context.cameras(&context.standing_panels(), &scales)?;
-    let timing = panel_times(&context, &stride, scales.relative_sd)?;
+    let timing = panel_times(&context, &stride, &scales)?;
     for (camera, time_s) in stride.iter_mut().zip(&timing.times_s) {
         camera.time_s = *time_s;
     }
     disagreements.extend(timing.disagreements);
     Ok(PlateCalibration {
-        withers_height_m: withers_height(&context, &standing, scales.relative_sd),
+        withers_height_m: withers_height(&context, [&standing, &stride], scales.relative_sd),
         stride,
         standing,
         speed_m_s: timing.speed_m_s,
@@ -290,32 +308,115 @@ pub fn calibrate(manifest: &Manifest, annotation: &Annotation) -> Result<PlateCa
     })
 }
 
-/// Withers height over the ground in standing panels, m.
-fn withers_height(context: &Context<'_>, cameras: &[PanelCamera], relative_sd: f64) -> Option<Estimate> {
+/// Withers height over the ground in standing panels, else in the stride's, m.
+fn withers_height(
+    context: &Context<'_>,
+    [standing, stride]: [&[PanelCamera]; 2],
+    relative_sd: f64,
+) -> Option<Estimate> {
     let withers = Keypoint::Body(BodyPoint::Withers);
-    let heights: Vec<f64> = context
-        .standing_panels()
-        .iter()
-        .zip(cameras)
-        .filter_map(|(panel, camera)| Some(camera.world_from_plate(panel.keypoints.place(withers)?, 0.0)[1]))
-        .collect();
-    let n = heights.len() as f64;
-    (n > 0.0).then(|| {
-        let value = heights.iter().sum::<f64>() / n;
-        Estimate { value, sd: value * relative_sd }
-    })
+    let mean = |panels: Vec<&PanelAnnotation>, cameras: &[PanelCamera]| {
+        let heights: Vec<f64> = panels
+            .iter()
+            .zip(cameras)
+            .filter_map(|(panel, camera)| {
+                Some(camera.world_from_plate(panel.keypoints.place(withers)?, 0.0)[1])
+            })
+            .collect();
+        let n = heights.len() as f64;
+        (n > 0.0).then(|| heights.iter().sum::<f64>() / n)
+    };
+    let standing = mean(context.standing_panels(), standing).map(|value| (value, 0.0));
+    let moving = || mean(context.stride_panels(), stride).map(|value| (value, MOVING_WITHERS_SD));
+    let (value, moving_sd) = standing.or_else(moving)?;
+    Some(Estimate { value, sd: value * relative_sd.hypot(moving_sd) })
 }
 
 /// The scale of each panel.
-struct Scales {
+pub(crate) struct Scales {
     parallax: Option<Estimate>,
-    relative_sd: f64,
-    /// Px per metre in the near legs' plane when it is the same for all panels.
-    common_px_per_m: Option<f64>,
+    pub(crate) relative_sd: f64,
+    /// Where the withers height drives the scale.
+    of_withers: Option<WithersScale>,
     disagreements: Vec<Disagreement>,
+    /// Where only the trunk's even advance is known.
+    advance: Option<Advance>,
+}
+
+/// The scale that makes the withers as high as they are known to be.
+#[derive(Clone, Copy)]
+struct WithersScale {
+    /// Px per metre in the near legs' plane, at the middle of the panels.
+    px_per_m: f64,
+    /// Relative change per panel: an animal that comes nearer or goes away from a camera that stays is seen larger or smaller.
+    /// Zero for a battery, whose cameras are all as far from the track.
+    per_panel: f64,
+    /// Index of the middle of the panels, counted from the stride's first.
+    middle: f64,
+}
+
+impl WithersScale {
+    fn new(context: &Context<'_>, px_per_m: f64) -> Self {
+        let first = f64::from(context.annotation.stride.first);
+        let panels = context.stride_panels();
+        let heights: Vec<[f64; 2]> = panels
+            .iter()
+            .filter_map(|panel| Some([f64::from(panel.panel) - first, panel_withers_px(panel)?]))
+            .collect();
+        let n = heights.len() as f64;
+        let mean = |axis: usize| heights.iter().map(|h| h[axis]).sum::<f64>() / n;
+        let (middle, height) = (mean(0), mean(1));
+        let sum = |axis: usize| -> f64 {
+            heights.iter().map(|h| (h[0] - middle) * (h[axis] - [middle, height][axis])).sum()
+        };
+        let slope = sum(1) / sum(0) / height;
+        let stays = matches!(context.calibration.position, Position::FixedCamera);
+        let per_panel = if stays && slope.is_finite() { slope } else { 0.0 };
+        Self { px_per_m, per_panel, middle: if middle.is_finite() { middle } else { 0.0 } }
+    }
+
+    fn at(self, index: f64) -> f64 {
+        self.px_per_m * (1.0 + self.per_panel * (index - self.middle))
+    }
+}
+
+/// The trunk's even advance, and where the trunk is seen in each panel.
+struct Advance {
+    stated: Option<Known>,
+    /// From the hooves in stance; missing where the advance is stated and no hoof shows it.
+    measured_px: Option<Estimate>,
+    trunk_ahead_px: Vec<(u32, f64)>,
+}
+
+impl Advance {
+    fn new(context: &Context<'_>) -> Result<Option<Self>, CalibrationError> {
+        let Position::EvenAdvance { per_panel_m } = &context.calibration.position else { return Ok(None) };
+        let ahead_px = trunk_ahead_px(context);
+        let measured_px = match (advance_px(context, &ahead_px), per_panel_m) {
+            (Err(error), None) => return Err(error),
+            (measured, _) => measured.ok(),
+        };
+        let panels = context.stride_panels().into_iter().map(|panel| panel.panel);
+        let trunk_ahead_px = panels.zip(ahead_px).collect();
+        Ok(Some(Self { stated: per_panel_m.clone(), measured_px, trunk_ahead_px }))
+    }
+
+    /// Px the trunk is ahead of a panel's middle; zero where it has no trunk points.
+    fn trunk_ahead_px(&self, panel: u32) -> f64 {
+        let found = self.trunk_ahead_px.iter().find(|(number, px)| *number == panel && px.is_finite());
+        found.map_or(0.0, |(_, px)| *px)
+    }
 }
 
 impl Scales {
+    /// Distance of the trunk per panel, m, as stated or as measured at a scale.
+    pub(crate) fn advance_m(&self, px_per_m: f64) -> Option<Estimate> {
+        let advance = self.advance.as_ref()?;
+        let measured =
+            advance.measured_px.map(|px| Estimate { value: px.value / px_per_m, sd: px.sd / px_per_m });
+        advance.stated.as_ref().map(|known| Estimate { value: known.value, sd: known.sd }).or(measured)
+    }
+
     fn new(context: &Context<'_>) -> Result<Self, CalibrationError> {
         let scale = &context.calibration.scale;
         let parallax = match &scale.known_length {
@@ -335,6 +436,7 @@ impl Scales {
             (name.to_string(), Estimate { value, sd: value * relative })
         };
         let mut disagreements = Vec::new();
+        let advance = Advance::new(context)?;
         let scales = match scale.driven_by {
             ScaleSource::KnownLength => {
                 let used = from_length.ok_or_else(|| first_panel_without_marks(context))?;
@@ -345,10 +447,11 @@ impl Scales {
                         other: named(&format!("withers height ({})", known.from), px_per_m, relative),
                     });
                 }
-                Self { parallax, relative_sd: length_sd, common_px_per_m: None, disagreements }
+                Self { parallax, relative_sd: length_sd, of_withers: None, disagreements, advance }
             }
             ScaleSource::WithersHeight => {
                 let (used, relative, _) = from_withers.ok_or(CalibrationError::NoWithers)?;
+                let withers = WithersScale::new(context, used);
                 if let Some(px_per_m) = from_length {
                     disagreements.push(Disagreement {
                         quantity: "scale on the track, px/m",
@@ -356,7 +459,7 @@ impl Scales {
                         other: named("known length", px_per_m, length_sd),
                     });
                 }
-                Self { parallax, relative_sd: relative, common_px_per_m: Some(used), disagreements }
+                Self { parallax, relative_sd: relative, of_withers: Some(withers), disagreements, advance }
             }
         };
         Ok(scales)
@@ -394,20 +497,19 @@ fn mean_mark_scale(context: &Context<'_>) -> Option<f64> {
 }
 
 /// Height of the withers over the ground line, px: from standing panels if there are any, else from all.
-fn withers_px(context: &Context<'_>) -> Option<f64> {
-    let withers = Keypoint::Body(BodyPoint::Withers);
+pub(crate) fn withers_px(context: &Context<'_>) -> Option<f64> {
     let mut panels = context.standing_panels();
     if panels.is_empty() {
         panels = context.stride_panels();
     }
-    let heights: Vec<f64> = panels
-        .iter()
-        .filter_map(|panel| {
-            let place = panel.keypoints.place(withers)?;
-            Some(GroundLine::through(panel.ground_px?).along_and_above(place)[1])
-        })
-        .collect();
+    let heights: Vec<f64> = panels.iter().filter_map(|panel| panel_withers_px(panel)).collect();
     (!heights.is_empty()).then(|| heights.iter().sum::<f64>() / heights.len() as f64).filter(|px| *px > 1.0)
+}
+
+/// Height of the withers over a panel's ground line, px.
+fn panel_withers_px(panel: &PanelAnnotation) -> Option<f64> {
+    let place = panel.keypoints.place(Keypoint::Body(BodyPoint::Withers))?;
+    Some(GroundLine::through(panel.ground_px?).along_and_above(place)[1])
 }
 
 impl Context<'_> {
@@ -435,7 +537,8 @@ impl Context<'_> {
             self.known_length().and_then(|length| self.mark_scale(panel, length.mark_spacing_m.value));
         let ratio = scales.parallax.map_or(1.0, |p| p.value);
         let px_per_m = scales
-            .common_px_per_m
+            .of_withers
+            .map(|scale| scale.at(index))
             .or(marks.map(|m| m.px_per_m * ratio))
             .ok_or(CalibrationError::TooFewMarks { panel: panel.panel })?;
         let (axis_px, origin) = self.axis(panel, index, &ground, marks)?;
@@ -443,6 +546,11 @@ impl Context<'_> {
         let camera_x_m = match origin {
             AxisOrigin::At(x_m) => x_m,
             AxisOrigin::PxFromAxis(px) => -sign * px / px_per_m,
+            AxisOrigin::TrunkAt(number, panels_on) => {
+                let ahead_px = scales.advance.as_ref().map_or(0.0, |advance| advance.trunk_ahead_px(number));
+                let per_panel_m = scales.advance_m(px_per_m).map_or(0.0, |advance| advance.value);
+                panels_on * per_panel_m - ahead_px / px_per_m
+            }
         };
         let camera = &self.calibration.camera;
         let possible =

@@ -9,6 +9,7 @@ mod annotation;
 mod calibration;
 mod catalogue;
 mod document;
+mod even_advance;
 pub mod exchange;
 mod files;
 mod images;
@@ -16,6 +17,7 @@ mod keypoint;
 mod line;
 mod manifest;
 mod parallax;
+mod similarity;
 mod timing;
 mod validation;
 
@@ -38,4 +40,6 @@ pub use manifest::{
     Calibration, Camera, Facing, Known, KnownLength, MANIFEST_SCHEMA, Manifest, Panel, Parallax, Plane,
     PlateImage, Position, Scale, ScaleSource, Time, TimeSource,
 };
+pub use similarity::{LEG_SHARE, SimilarityLaw};
+pub use timing::CLOSING_SD_PANELS;
 pub use validation::{Fault, ImageCheck, MIN_POINTS_PER_PANEL, PANEL_MARGIN_PX, Plate, PlateError};

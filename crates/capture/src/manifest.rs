@@ -234,6 +234,12 @@ pub enum Position {
     },
     /// One camera that does not move.
     FixedCamera,
+    /// Pictures cut out around the animal, or a stride averaged over many: only that the trunk moves on evenly is known.
+    EvenAdvance {
+        /// Distance the trunk moves from panel to panel; none to have it measured from the hooves in stance, which stay where
+        /// they are while the trunk passes over them.
+        per_panel_m: Option<Known>,
+    },
 }
 
 /// Which of the times drives the fit; any other that is given is compared with it.
@@ -246,6 +252,9 @@ pub enum TimeSource {
     Speed,
     /// Duration of one stride, spread evenly over its panels.
     StrideTime,
+    /// Nothing is known: the speed at which horses have a stride of this length (dynamic similarity), panels evenly spaced in
+    /// time. Every number that rests on it is inferred.
+    DynamicSimilarity,
 }
 
 /// Time.

@@ -25,11 +25,14 @@ struct StanceToe {
     sd_m: f64,
 }
 
-/// Two panels of one stance: camera step, how far the toe fell back against the axis, its standard deviation; metres.
-struct StancePair {
-    step_m: f64,
-    back_m: f64,
-    sd_m: f64,
+/// Two panels of one stance, all in one unit.
+pub(crate) struct StancePair {
+    /// How far the camera, or the trunk, moved on, in the unit the ratio is to be counted in.
+    pub(crate) step: f64,
+    /// How far the toe fell back.
+    pub(crate) back: f64,
+    /// Standard deviation of `back`.
+    pub(crate) sd: f64,
 }
 
 /// Scale on the track over scale on the wall; none when no hoof is labelled stance and seen in two neighbouring panels.
@@ -49,9 +52,9 @@ pub(crate) fn scale_ratio_from_stance(context: &Context<'_>, length: &KnownLengt
                 .collect();
             pairs.extend(toes.windows(2).filter_map(|two| match two {
                 [Some(a), Some(b)] if b.panel == a.panel + 1 => Some(StancePair {
-                    step_m: b.camera_x_m - a.camera_x_m,
-                    back_m: a.ahead_m - b.ahead_m,
-                    sd_m: a.sd_m.hypot(b.sd_m),
+                    step: b.camera_x_m - a.camera_x_m,
+                    back: a.ahead_m - b.ahead_m,
+                    sd: a.sd_m.hypot(b.sd_m),
                 }),
                 _ => None,
             }));
@@ -60,24 +63,24 @@ pub(crate) fn scale_ratio_from_stance(context: &Context<'_>, length: &KnownLengt
     robust_ratio(&pairs)
 }
 
-/// Ratio of `back_m` to `step_m`, with Cauchy weights at one standard deviation.
-fn robust_ratio(pairs: &[StancePair]) -> Option<Estimate> {
+/// Ratio of `back` to `step`, with Cauchy weights at one standard deviation.
+pub(crate) fn robust_ratio(pairs: &[StancePair]) -> Option<Estimate> {
     let mut ratio = f64::NAN;
-    let mut weights: Vec<f64> = pairs.iter().map(|pair| pair.sd_m.powi(-2)).collect();
-    let chi_sq = |pair: &StancePair, ratio: f64| ((pair.back_m - ratio * pair.step_m) / pair.sd_m).powi(2);
+    let mut weights: Vec<f64> = pairs.iter().map(|pair| pair.sd.powi(-2)).collect();
+    let chi_sq = |pair: &StancePair, ratio: f64| ((pair.back - ratio * pair.step) / pair.sd).powi(2);
     for _ in 0..ROUNDS {
         let sums = pairs.iter().zip(&weights).fold((0.0, 0.0), |(xy, xx), (pair, weight)| {
-            (xy + weight * pair.step_m * pair.back_m, xx + weight * pair.step_m * pair.step_m)
+            (xy + weight * pair.step * pair.back, xx + weight * pair.step * pair.step)
         });
         ratio = sums.0 / sums.1;
         for (weight, pair) in weights.iter_mut().zip(pairs) {
-            *weight = pair.sd_m.powi(-2) / (1.0 + chi_sq(pair, ratio));
+            *weight = pair.sd.powi(-2) / (1.0 + chi_sq(pair, ratio));
         }
     }
     if !(ratio.is_finite() && ratio > 0.0) {
         return None;
     }
-    let information: f64 = pairs.iter().zip(&weights).map(|(pair, w)| w * pair.step_m * pair.step_m).sum();
+    let information: f64 = pairs.iter().zip(&weights).map(|(pair, w)| w * pair.step * pair.step).sum();
     Some(Estimate { value: ratio, sd: information.powf(-0.5) })
 }
 
@@ -102,17 +105,28 @@ fn stance_toe(
     let facing = context.facing.sign();
     let axis_mark_m = first_axis_mark * mark_m + scale.sign * facing * camera_x_m;
     let axis_px = scale.zero_along_px + scale.sign * scale.px_per_m * axis_mark_m;
+    let ahead_m = facing * (along_px - axis_px) / (scale.px_per_m * shrink(context, side));
+    let sd_m = toe_sd_px(context, panel, toe)? / scale.px_per_m;
+    Some(StanceToe { panel: panel.panel, camera_x_m, ahead_m, sd_m })
+}
+
+/// How much smaller than near hooves the hooves of a side are seen.
+pub(crate) fn shrink(context: &Context<'_>, side: NearOff) -> f64 {
     let distance_m = context.calibration.camera.distance_m.value;
-    let shrink = match side {
+    match side {
         NearOff::Near => 1.0,
         NearOff::Off => distance_m / (distance_m + hoof_track_width_m()),
-    };
-    let ahead_m = facing * (along_px - axis_px) / (scale.px_per_m * shrink);
-    let sd_px = match panel.keypoints.get(toe)?.state {
+    }
+}
+
+/// Standard deviation of a placed point, px; none where it is not placed.
+pub(crate) fn toe_sd_px(context: &Context<'_>, panel: &PanelAnnotation, toe: Keypoint) -> Option<f64> {
+    let placed = panel.keypoints.get(toe)?;
+    let of_state = match placed.state {
         KeypointState::Visible => context.annotation.visible_sd_px,
         KeypointState::Occluded | KeypointState::Absent => context.annotation.occluded_sd_px,
     };
-    Some(StanceToe { panel: panel.panel, camera_x_m, ahead_m, sd_m: sd_px / scale.px_per_m })
+    Some(placed.sd_px.unwrap_or(of_state))
 }
 
 /// Distance between the planes of near and off hooves, m: the reference horse's. It is small against the camera's

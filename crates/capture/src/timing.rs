@@ -3,13 +3,17 @@
 use muybridge_core::SpeedSource;
 
 use crate::annotation::PanelAnnotation;
-use crate::calibration::{CalibrationError, Context, Disagreement, Estimate, PanelCamera};
-use crate::keypoint::{BodyPoint, Keypoint};
+use crate::calibration::{
+    CalibrationError, Context, Disagreement, Estimate, PanelCamera, Scales, withers_px,
+};
+use crate::even_advance::{TRUNK, trunk_places};
+use crate::keypoint::Keypoint;
 use crate::manifest::{Known, Position, TimeSource};
+use crate::similarity::{LEG_SHARE, SimilarityLaw};
 use crate::validation::SPEEDS_M_S;
 
-/// Trunk points that ride with the body; head and neck nod.
-const TRUNK: [BodyPoint; 4] = [BodyPoint::Withers, BodyPoint::Back, BodyPoint::Croup, BodyPoint::Dock];
+/// A person tells the panel at which a stride closes to about a quarter of a panel.
+pub const CLOSING_SD_PANELS: f64 = 0.25;
 
 /// Times and speed of a stride's panels.
 pub(crate) struct Timing {
@@ -23,8 +27,9 @@ pub(crate) struct Timing {
 pub(crate) fn panel_times(
     context: &Context<'_>,
     cameras: &[PanelCamera],
-    scale_relative_sd: f64,
+    scale: &Scales,
 ) -> Result<Timing, CalibrationError> {
+    let scale_relative_sd = scale.relative_sd;
     let time = &context.calibration.time;
     let panels = context.stride_panels();
     let advance_m = trunk_advance(&panels, cameras);
@@ -34,6 +39,7 @@ pub(crate) fn panel_times(
     let distance_m = advance_m.last().copied().unwrap_or(0.0);
     let stated_interval = time.interval_s.as_ref().map(estimate);
     let stated_speed = time.speed_m_s.as_ref().map(estimate);
+    let mut inferred_relative_sd = 0.0;
     let (times_s, speed_source) = match time.driven_by {
         TimeSource::Speed => {
             let speed = stated_speed.map_or(f64::NAN, |s| s.value);
@@ -41,17 +47,26 @@ pub(crate) fn panel_times(
         }
         TimeSource::Interval => (interval_times(context, &panels), SpeedSource::Measured),
         TimeSource::StrideTime => (stride_times(context, &panels)?, SpeedSource::Measured),
+        TimeSource::DynamicSimilarity => {
+            let inferred = inferred_speed(context, cameras, scale, distance_m / gaps)?;
+            let interval_s = distance_m / gaps / inferred.value;
+            inferred_relative_sd = inferred.sd / inferred.value;
+            let first = context.annotation.stride.first;
+            let times = panels.iter().map(|panel| f64::from(panel.panel - first) * interval_s).collect();
+            (times, SpeedSource::Inferred)
+        }
     };
     require_rising(&panels, &times_s)?;
     let duration_s = times_s.last().copied().unwrap_or(0.0);
-    let relative_time_sd = relative_sd(match time.driven_by {
-        TimeSource::Speed => time.speed_m_s.as_ref(),
-        TimeSource::Interval => time.interval_s.as_ref(),
-        TimeSource::StrideTime => time.stride_time_s.as_ref(),
-    });
+    let relative_time_sd = match time.driven_by {
+        TimeSource::Speed => relative_sd(time.speed_m_s.as_ref()),
+        TimeSource::Interval => relative_sd(time.interval_s.as_ref()),
+        TimeSource::StrideTime => relative_sd(time.stride_time_s.as_ref()),
+        TimeSource::DynamicSimilarity => inferred_relative_sd,
+    };
     let interval_sd = match time.driven_by {
         TimeSource::Speed => relative_time_sd.hypot(scale_relative_sd),
-        TimeSource::Interval | TimeSource::StrideTime => relative_time_sd,
+        TimeSource::Interval | TimeSource::StrideTime | TimeSource::DynamicSimilarity => relative_time_sd,
     };
     let (interval, speed) = (duration_s / gaps, distance_m / duration_s);
     if !(speed > SPEEDS_M_S[0] && speed <= SPEEDS_M_S[1]) {
@@ -62,7 +77,7 @@ pub(crate) fn panel_times(
     }
     let interval_s = Estimate { value: interval, sd: interval * interval_sd };
     let speed_sd = match time.driven_by {
-        TimeSource::Speed => relative_time_sd,
+        TimeSource::Speed | TimeSource::DynamicSimilarity => relative_time_sd,
         TimeSource::Interval | TimeSource::StrideTime => relative_time_sd.hypot(scale_relative_sd),
     };
     let speed_m_s = Estimate { value: speed, sd: speed.abs() * speed_sd };
@@ -87,8 +102,14 @@ pub(crate) fn panel_times(
             other,
         });
     }
-    if let (TimeSource::Interval, Some(other)) = (time.driven_by, stated_speed) {
-        let used = ("distance per panel over the stated interval".to_string(), speed_m_s);
+    if let (TimeSource::Interval | TimeSource::DynamicSimilarity, Some(other)) =
+        (time.driven_by, stated_speed)
+    {
+        let used = match time.driven_by {
+            TimeSource::Interval => "distance per panel over the stated interval",
+            _ => "inferred by dynamic similarity",
+        };
+        let used = (used.to_string(), speed_m_s);
         disagreements.push(Disagreement {
             quantity: "speed, m/s",
             used,
@@ -143,6 +164,35 @@ fn stride_times(context: &Context<'_>, panels: &[&PanelAnnotation]) -> Result<Ve
     Ok(panels.iter().map(|panel| f64::from(panel.panel - first) * stride_s / closes).collect())
 }
 
+/// The speed at which horses take strides of this length, from the even advance per panel, m.
+fn inferred_speed(
+    context: &Context<'_>,
+    cameras: &[PanelCamera],
+    scale: &Scales,
+    per_panel_m: f64,
+) -> Result<Estimate, CalibrationError> {
+    let missing = CalibrationError::NoSimilarity;
+    let gait = context.annotation.gait(context.manifest);
+    let law = SimilarityLaw::of(gait).ok_or(missing("the length of a leap is not a gait's"))?;
+    let panels = context.annotation.stride.closes_after_panels;
+    let panels =
+        panels.ok_or(missing("stride.closes_after_panels must say how many panels the stride spans"))?;
+    let px_per_m = cameras.first().map_or(f64::NAN, |camera| camera.px_per_m);
+    let withers_m = withers_px(context).map(|px| px / px_per_m);
+    let stated = context.calibration.scale.withers_height_m.as_ref().map(|known| known.value);
+    let leg_m = LEG_SHARE * stated.or(withers_m).ok_or(missing("the withers are placed in no panel"))?;
+    let advance_sd = scale.advance_m(px_per_m).map_or(0.0, |advance| advance.sd / advance.value);
+    let relative_sd = advance_sd.hypot(CLOSING_SD_PANELS / panels);
+    let relative = per_panel_m * panels / leg_m;
+    if !(relative.is_finite() && relative > 0.0) {
+        return Err(CalibrationError::Contradiction(format!(
+            "time: the trunk moves forward by {per_panel_m:.3} m per panel; check the facing direction and the scale"
+        )));
+    }
+    let leg_m = Estimate { value: leg_m, sd: leg_m * scale.relative_sd };
+    Ok(law.speed_m_s(Estimate { value: relative, sd: relative * relative_sd }, leg_m))
+}
+
 fn require_rising(panels: &[&PanelAnnotation], times_s: &[f64]) -> Result<(), CalibrationError> {
     for (two, panel) in times_s.windows(2).zip(panels.windows(2)) {
         let (a, b) = (panel[0].panel, panel[1].panel);
@@ -160,8 +210,7 @@ fn require_rising(panels: &[&PanelAnnotation], times_s: &[f64]) -> Result<(), Ca
     Ok(())
 }
 
-/// How far the trunk has come since the first panel, m: an additive fit (panel + point) over all trunk points placed,
-/// so that a point missing in one panel does not shift it.
+/// How far the trunk has come since the first panel, m.
 fn trunk_advance(panels: &[&PanelAnnotation], cameras: &[PanelCamera]) -> Vec<f64> {
     let x_m: Vec<[Option<f64>; TRUNK.len()]> = panels
         .iter()
@@ -172,27 +221,7 @@ fn trunk_advance(panels: &[&PanelAnnotation], cameras: &[PanelCamera]) -> Vec<f6
             })
         })
         .collect();
-    let mean = |values: &mut dyn Iterator<Item = f64>| {
-        let (n, sum) = values.fold((0.0, 0.0), |(n, sum), v| (n + 1.0, sum + v));
-        (n > 0.0).then(|| sum / n)
-    };
-    let mut offsets = [0.0; TRUNK.len()];
-    let mut places = vec![0.0; panels.len()];
-    // Alternating means converge geometrically; with points missing at random twenty rounds leave less than 1e-6 m.
-    for _ in 0..20 {
-        for (place, row) in places.iter_mut().zip(&x_m) {
-            let mut known = row.iter().zip(&offsets).filter_map(|(x, offset)| x.map(|x| x - offset));
-            *place = mean(&mut known).unwrap_or(f64::NAN);
-        }
-        for (k, offset) in offsets.iter_mut().enumerate() {
-            let mut known = x_m
-                .iter()
-                .zip(&places)
-                .filter_map(|(row, place)| row[k].map(|x| x - place))
-                .filter(|v| v.is_finite());
-            *offset = mean(&mut known).unwrap_or(0.0);
-        }
-    }
+    let mut places = trunk_places(&x_m);
     fill_gaps(&mut places);
     let start = places.first().copied().unwrap_or(0.0);
     places.iter().map(|place| place - start).collect()

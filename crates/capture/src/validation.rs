@@ -29,6 +29,8 @@ const MOST_ENTRIES: usize = 10_000;
 const LONGEST_TEXT: usize = 10_000;
 /// Faults that are told; where there are more, the file is not what it should be as a whole.
 const MOST_FAULTS: usize = 100;
+/// Largest standard deviation of a place, px.
+const LARGEST_SD_PX: f64 = 1000.0;
 /// No point of a plate lies farther from its corner than this, px.
 const FARTHEST_PX: f64 = 1e6;
 /// A point may lie this far outside its panel, px: hooves and noses touch the mount.
@@ -396,6 +398,9 @@ impl Faults {
                 "must be a mark number",
             );
         }
+        if let Position::EvenAdvance { per_panel_m } = &calibration.position {
+            self.known("calibration.position.per_panel_m", per_panel_m.as_ref(), SPACINGS_M);
+        }
         self.time(calibration);
         self.known("calibration.camera.distance_m", Some(&calibration.camera.distance_m), [1.0, 1000.0]);
         self.known("calibration.camera.height_m", Some(&calibration.camera.height_m), [-1.0, 50.0]);
@@ -419,6 +424,7 @@ impl Faults {
             TimeSource::Interval => time.interval_s.is_some(),
             TimeSource::Speed => time.speed_m_s.is_some(),
             TimeSource::StrideTime => time.stride_time_s.is_some(),
+            TimeSource::DynamicSimilarity => true,
         };
         self.check(given, None, "calibration.time.driven_by", "names a source that is not given");
     }
@@ -452,7 +458,12 @@ impl Faults {
         for (field, sd) in
             [("visible_sd_px", annotation.visible_sd_px), ("occluded_sd_px", annotation.occluded_sd_px)]
         {
-            self.check(sd > 0.0 && sd <= 1000.0, None, field, "must be more than 0 and at most 1000 px");
+            self.check(
+                sd > 0.0 && sd <= LARGEST_SD_PX,
+                None,
+                field,
+                "must be more than 0 and at most 1000 px",
+            );
         }
         self.texts("annotator and notes", annotation.notes.iter().chain([&annotation.annotator]));
         let most = annotation.panels.iter().map(|panel| panel.marks.len()).max().unwrap_or(0);
@@ -503,6 +514,8 @@ impl Faults {
         for (keypoint, placed) in panel.keypoints.iter() {
             let field = format!("keypoints.{keypoint}");
             self.check(placed.at_px.iter().all(good), number, &field, "must be a point of the plate");
+            let sd = placed.sd_px.is_none_or(|sd| sd > 0.0 && sd <= LARGEST_SD_PX);
+            self.check(sd, number, &format!("{field}.sd_px"), "must be more than 0 and at most 1000 px");
         }
     }
 

@@ -63,7 +63,10 @@ impl Truth {
         let mut keypoints = Keypoints::default();
         let mut place = |keypoint, x_m: f64, y_m: f64| {
             let at_px = Some(self.near_px(panel, x_m, y_m));
-            keypoints.insert(keypoint, Placed { at_px, state: KeypointState::Visible, by: PlacedBy::Hand });
+            keypoints.insert(
+                keypoint,
+                Placed { at_px, state: KeypointState::Visible, by: PlacedBy::Hand, sd_px: None },
+            );
         };
         let trunk_m = Self::trunk_m(panel);
         place(Keypoint::Body(BodyPoint::Withers), trunk_m + 0.4, 1.6);
@@ -96,6 +99,7 @@ impl Truth {
             annotator: "test".into(),
             visible_sd_px: 1.0,
             occluded_sd_px: 3.0,
+            gait: None,
             stride: StrideSpan { first: 1, last: PANELS - 1, closes_after_panels: Some(4.0) },
             notes: Vec::new(),
             panels: (1..=PANELS).map(|panel| self.panel(panel)).collect(),

@@ -7,7 +7,9 @@ use crate::law::{ContactLaw, LawKind};
 use crate::stride::Stride;
 
 /// Schema version of a database file.
-pub const DATABASE_SCHEMA: u32 = 1;
+///
+/// 2: curves are packed (see [`crate::CURVE_STEP`]), and a law says where a borrowed exponent is from.
+pub const DATABASE_SCHEMA: u32 = 2;
 
 /// Why a data file could not be read.
 #[derive(Debug)]

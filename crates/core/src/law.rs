@@ -77,6 +77,9 @@ pub struct ContactLaw {
     pub n: usize,
     /// 95 % interval; none with fewer than three points, where the data carry none.
     pub interval: Option<Interval>,
+    /// Where the exponent is borrowed from, where the gait's own captures cannot tell it; `a` is then their own still.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub borrowed: Option<String>,
     /// Where it comes from.
     pub provenance: Provenance,
 }

@@ -17,22 +17,26 @@ mod database;
 mod gait;
 mod law;
 mod limb;
+mod packed;
 mod pose;
 mod provenance;
 mod random;
 mod skeleton;
+mod speed_blend;
 mod stride;
 
 pub use database::{DATABASE_SCHEMA, DataError, Database};
 pub use gait::{Gait, Lead};
 pub use law::{ContactLaw, Interval, LawKind, MPS_PER_MPH, PowerLaw};
 pub use limb::{Limb, Pair, Side};
+pub use packed::CURVE_STEP;
 pub use pose::{Joints, Pose};
 pub use provenance::{Provenance, SpeedSource};
 pub use random::Random;
 pub use skeleton::{
     BONE_COUNT, Bone, FetlockCoupling, ReciprocalCoupling, SKELETON_SCHEMA, Skeleton, SwingFetlock, bone,
 };
+pub use speed_blend::SpeedBlend;
 pub use stride::{CHANNEL_COUNT, CURVE_SAMPLES, Contact, Curves, Stride};
 
 /// Runs the README's example as a test.

@@ -11,7 +11,7 @@ use crate::skeleton::{BONE_COUNT, Skeleton};
 
 /// Samples per periodic curve. A stride's distal joints hold about six harmonics; 48 samples carry them with an
 /// interpolation error below a tenth of a degree.
-pub const CURVE_SAMPLES: usize = 48;
+pub const CURVE_SAMPLES: usize = 96;
 /// Curves per stride: root surge, height and pitch, 28 bends, two scapula slides.
 pub const CHANNEL_COUNT: usize = 3 + BONE_COUNT + 2;
 
@@ -37,7 +37,7 @@ impl Contact {
 }
 
 /// The stride's periodic channels, each [`CURVE_SAMPLES`] values at phases `k / CURVE_SAMPLES`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// Root ahead of the uniform advance `stride length * phase`, metres.
     pub surge_m: Vec<f32>,
@@ -74,7 +74,7 @@ pub struct Stride {
     pub speed_m_s: f32,
     /// Duration of the stride, s.
     pub stride_time_s: f32,
-    /// Withers height of the animal, metres.
+    /// Size of the animal: withers height of the reference skeleton scaled to it, metres. Its own bones are `bone_lengths_m`.
     pub withers_height_m: f32,
     /// Length of each bone, metres.
     pub bone_lengths_m: Vec<f32>,

@@ -11,6 +11,7 @@ use std::time::Instant;
 use muybridge_capture::write_json;
 use muybridge_core::Skeleton;
 use muybridge_fitting::export_problem::ExportedProblem;
+use muybridge_fitting::gait_laws::Evidence;
 use muybridge_fitting::levenberg::{Curvature, LeastSquares, Linearization, Optimum, solve};
 use muybridge_fitting::motion_database::build_database;
 use muybridge_fitting::observation::StrideObservation;
@@ -81,7 +82,10 @@ fn time_plate() -> Result<f64, Box<dyn Error>> {
     for _ in 0..PLATE_RUNS {
         let start = Instant::now();
         let fitted = fit_plate(&annotation, &skeleton, &weights)?;
-        std::hint::black_box(build_database(std::slice::from_ref(&fitted), &skeleton));
+        std::hint::black_box(build_database(
+            &Evidence { fits: std::slice::from_ref(&fitted), ..Evidence::default() },
+            &skeleton,
+        ));
         seconds.push(start.elapsed().as_secs_f64());
     }
     Ok(median(seconds))

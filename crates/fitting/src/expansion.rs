@@ -2,52 +2,86 @@
 //!
 //! The stance time of each pair follows its law; swing keeps the duration of the capture, so that the stride becomes
 //! their sum and the duty factor falls with speed. Strikes keep their phases. Each toe's path relative to its shoulder
-//! or hip is scaled by `D'/D` along the track and over the ground, the stance toe stands still, and the leg is solved
-//! anew by damped least squares.
+//! or hip is scaled by `D'/D` along the track and over the ground; a standing toe stands still on the ground exactly, leaves it
+//! and comes to it without a jerk, and the leg is solved anew by damped least squares. Where a leg cannot reach, the body
+//! is lowered: the body gives way, not the foot.
 
-use muybridge_core::{CURVE_SAMPLES, Contact, Limb, Pair, Pose, PowerLaw, Provenance, Skeleton, Stride};
-use nalgebra::{Matrix2, SMatrix, Vector2};
+use muybridge_core::{CURVE_SAMPLES, Contact, Limb, Pair, Pose, Provenance, Skeleton, Stride};
 
-/// Damping of the leg solution, m per rad: large enough to stay calm at full stretch, small against a leg of a metre.
-const DAMPING_M: f64 = 0.02;
-/// Willingness of each joint to turn, root to fetlock: scapula and pelvis carry the trunk and give way last.
-const WILLING: [f64; 5] = [0.3, 1.0, 1.0, 1.0, 1.0];
-/// Solver steps per sample; errors fall by more than half at each.
-const STEPS: usize = 40;
-/// A toe farther than this from its wanted place after solving makes the speed unreachable, m.
-const REACH_TOLERANCE_M: f64 = 0.015;
+use crate::leg_reach::{LegBends, leg_bends, reach_from, willingness};
 
-/// A captured stride at another speed, under the stance laws of fore and hind limbs; none where a leg cannot reach.
-pub fn expand(
-    captured: &Stride,
-    reference: &Skeleton,
-    laws: [PowerLaw; 2],
-    speed_m_s: f64,
-) -> Option<Stride> {
-    let timing = Timing::new(captured, laws, speed_m_s);
+/// A toe in the air may miss its place by this before the body gives way, m; less as it nears the ground, where it must not.
+const SLACK_M: f64 = 0.08;
+/// What a leg that could not reach is left to spare, m: a leg stretched to its last millimetre jerks.
+const SPARE_M: f64 = 0.004;
+/// A standing toe farther than this from its print makes the body give way, m.
+const REACH_TOLERANCE_M: f64 = 2e-4;
+/// Rounds of lowering the body; each takes away what the worst leg lacks and a little more.
+const LOWERING_ROUNDS: usize = 12;
+/// How much more than what is lacking the body is lowered: a leg that slants gains less than the body falls.
+const LOWERING: f64 = 1.3;
+/// Share of the swing, at either end, in which the toe's speed over the ground is led to zero and the loaded foreleg's carpus is
+/// freed or locked.
+const EASING: f64 = 0.12;
+
+/// Share of a toe's speed along the track and over the ground that is taken away at the ends of its swing. A hoof that slid would be
+/// seen at once; one that comes down without any speed would have to hang over its print while the body is still high.
+const EASED: [f64; 2] = [1.0, 0.5];
+
+/// Height over the ground that a toe keeps in the middle of its swing, m. Points placed on a sole are good to a centimetre or two, and
+/// a hoof that ploughs the ground is seen at once.
+const CLEARANCE_M: f64 = 0.025;
+/// Samples on either side of a stance over which the toe is let go of its print.
+const HELD_SAMPLES: f64 = 4.0;
+
+/// Share of a sample's turn that the next begins with; after a swing's half nothing of an old turn is left.
+const CARRIED: f64 = 0.85;
+
+/// How a capture is to go: at which speed, and how long its limbs stand against the capture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pace {
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// Stance time over the capture's, of a fore and of a hind limb.
+    pub stance_ratios: [f64; 2],
+}
+
+/// A captured stride at another pace; none where a leg cannot reach even with the body lowered.
+pub fn expand(captured: &Stride, reference: &Skeleton, pace: Pace) -> Option<Stride> {
+    let timing = Timing::new(captured, pace);
     let skeleton = captured.skeleton(reference);
     let mut stride = captured.clone();
-    stride.speed_m_s = speed_m_s as f32;
+    stride.speed_m_s = pace.speed_m_s as f32;
     stride.stride_time_s = timing.stride_time_s as f32;
     stride.contacts = timing.contacts;
     stride.curves.surge_m.iter_mut().for_each(|surge| *surge *= timing.mean_step_ratio as f32);
     stride.provenance = Provenance::Derived {
         from: vec![captured.id.clone()],
         how: format!(
-            "expanded from {:.1} to {speed_m_s:.1} m/s by its gait's stance laws",
-            captured.speed_m_s
+            "expanded from {:.1} to {:.1} m/s by its gait's stance laws",
+            captured.speed_m_s, pace.speed_m_s
         ),
     };
-    let stride_length_m = speed_m_s * timing.stride_time_s;
-    for limb in Limb::ALL {
-        let path = ToePath::new(captured, &skeleton, &stride, limb, &timing, stride_length_m);
-        stride.prints_m[limb.index()] = path.print_m as f32;
-        solve_leg(&mut stride, &skeleton, limb, &path)?;
+    Limb::ALL.into_iter().for_each(|limb| warp_leg(&mut stride, captured, limb));
+    for _ in 0..LOWERING_ROUNDS {
+        let mut solved = stride.clone();
+        let lacking_m = Limb::ALL
+            .into_iter()
+            .map(|limb| {
+                let path = ToePath::new(captured, &skeleton, &stride, limb, &timing);
+                solved.prints_m[limb.index()] = path.print_m as f32;
+                solve_leg(&mut solved, &stride, &skeleton, limb, &path)
+            })
+            .fold(0.0, f64::max);
+        if lacking_m < REACH_TOLERANCE_M {
+            return Some(solved);
+        }
+        stride.curves.height_m.iter_mut().for_each(|height| *height -= (LOWERING * lacking_m) as f32);
     }
-    Some(stride)
+    None
 }
 
-/// Stance and stride times at the new speed.
+/// Stance and stride times at the new pace.
 struct Timing {
     stride_time_s: f64,
     contacts: [Contact; 4],
@@ -57,14 +91,11 @@ struct Timing {
 }
 
 impl Timing {
-    fn new(captured: &Stride, laws: [PowerLaw; 2], speed_m_s: f64) -> Self {
+    fn new(captured: &Stride, pace: Pace) -> Self {
         let (old_speed, old_stride) = (f64::from(captured.speed_m_s), f64::from(captured.stride_time_s));
-        let time_ratio = |pair: Pair| {
-            let law = laws[pair as usize];
-            law.contact_time_s(speed_m_s) / law.contact_time_s(old_speed)
-        };
+        let ratio = |pair: Pair| pace.stance_ratios[pair as usize];
         let duty = |limb: Limb| f64::from(captured.contacts[limb.index()].duty_factor());
-        let stance_s = Limb::ALL.map(|limb| duty(limb) * old_stride * time_ratio(limb.pair()));
+        let stance_s = Limb::ALL.map(|limb| duty(limb) * old_stride * ratio(limb.pair()));
         let swing_s = Limb::ALL.map(|limb| (1.0 - duty(limb)) * old_stride);
         let stride_time_s = (0..4).map(|i| stance_s[i] + swing_s[i]).sum::<f64>() / 4.0;
         let contacts = Limb::ALL.map(|limb| {
@@ -72,67 +103,151 @@ impl Timing {
             let duty = (stance_s[limb.index()] / stride_time_s) as f32;
             Contact { strike_phase, lift_off_phase: (strike_phase + duty).rem_euclid(1.0) }
         });
-        let step_ratios = [Pair::Fore, Pair::Hind].map(|pair| speed_m_s / old_speed * time_ratio(pair));
+        let step_ratios = [Pair::Fore, Pair::Hind].map(|pair| pace.speed_m_s / old_speed * ratio(pair));
         let mean_step_ratio = 0.5 * (step_ratios[0] + step_ratios[1]);
         Self { stride_time_s, contacts, step_ratios, mean_step_ratio }
     }
 }
 
-/// Where a toe is to be at each sample: metres along the track from the root's place at phase 0, and height.
+/// A leg's bends, and its scapula's slide, at the same point of its step cycle as in the capture.
+fn warp_leg(stride: &mut Stride, captured: &Stride, limb: Limb) {
+    let (new, old) = (stride.contacts[limb.index()], captured.contacts[limb.index()]);
+    for k in 0..CURVE_SAMPLES {
+        let pose = captured.pose(same_step(sample_phase(k), new, old) as f32);
+        for bone in limb.first_bone()..=limb.hoof_bone() {
+            stride.curves.bends_rad[bone][k] = pose.bends_rad[bone];
+        }
+        if limb.pair() == Pair::Fore {
+            stride.curves.scapula_slides_m[limb.index()][k] = pose.scapula_slides_m[limb.index()];
+        }
+    }
+}
+
+fn sample_phase(k: usize) -> f64 {
+    k as f64 / CURVE_SAMPLES as f64
+}
+
+/// Where a toe is to be at each sample.
 struct ToePath {
-    places: Vec<[f64; 2]>,
+    places: Vec<Place>,
     print_m: f64,
 }
 
+#[derive(Clone, Copy)]
+struct Place {
+    /// Metres along the track from the root's place at phase 0, and over the ground.
+    at_m: [f64; 2],
+    /// 1 in stance, falling to 0 over the ends of the swing.
+    load: f64,
+}
+
 impl ToePath {
-    fn new(
-        captured: &Stride,
-        skeleton: &Skeleton,
-        new: &Stride,
-        limb: Limb,
-        timing: &Timing,
-        stride_length_m: f64,
-    ) -> Self {
+    fn new(captured: &Stride, skeleton: &Skeleton, new: &Stride, limb: Limb, timing: &Timing) -> Self {
         let ratio = timing.step_ratios[limb.pair() as usize];
         let (old, contact) = (captured.contacts[limb.index()], timing.contacts[limb.index()]);
         let strike = f64::from(contact.strike_phase);
         let duty = f64::from(contact.duty_factor());
-        // Toe ahead of its shoulder or hip in the capture at the same point of its own step cycle.
-        let ahead = |phase: f64| {
-            let old_phase = same_step(phase, contact, old);
-            let joints = captured.pose(old_phase as f32).joints(skeleton);
-            let (toe, root) = (joints.toe(limb), joints.tips[limb.first_bone()]);
+        let stride_length_m = f64::from(new.stride_length_m());
+        let old_toe = |phase: f64| {
+            let joints = captured.pose(same_step(phase, contact, old) as f32).joints(skeleton);
+            let (toe, root) = (joints.toe(limb), joints.bases[limb.first_bone()]);
             [f64::from(toe.x - root.x), f64::from(toe.y)]
         };
-        let root_x = |phase: f64| {
-            let joints = new.pose(phase as f32).joints(skeleton);
-            f64::from(joints.tips[limb.first_bone()].x)
+        let ground_m = old_toe(strike + 0.5 * duty)[1];
+        // The toe as it would go by similar triangles alone, at any real phase.
+        let similar = |phase: f64| {
+            let root = new.pose(phase as f32).joints(skeleton).bases[limb.first_bone()];
+            let [ahead_m, height_m] = old_toe(phase);
+            [f64::from(root.x) + ratio * ahead_m, ratio * (height_m - ground_m)]
         };
-        let scaled_x = |phase: f64| root_x(phase) + ratio * ahead(phase)[0];
-        let print_m = scaled_x(strike + 0.5 * duty);
-        // What the scaled path misses the prints by, at lift-off and at the next strike; spread over the swing.
-        let leaving = print_m - scaled_x(strike + duty);
-        let arriving = print_m + stride_length_m - scaled_x(strike + 1.0);
-        let stance_y = ahead(strike + 0.5 * duty)[1];
+        let print_m = similar(strike + 0.5 * duty)[0];
+        let swing = Swing::new([[print_m, 0.0], [print_m + stride_length_m, 0.0]], |share| {
+            similar(strike + duty + share * (1.0 - duty))
+        });
         let places = (0..CURVE_SAMPLES)
             .map(|k| {
-                let phase = k as f64 / CURVE_SAMPLES as f64;
+                let phase = sample_phase(k);
                 let since = (phase - strike).rem_euclid(1.0);
-                let turn = phase - strike - since;
-                if since < duty {
-                    return [print_m + turn * stride_length_m, 0.0];
+                let turns_m = (phase - strike - since) * stride_length_m;
+                if since <= duty {
+                    return Place { at_m: [print_m + turns_m, 0.0], load: 1.0 };
                 }
-                let swing = (since - duty) / (1.0 - duty);
-                let x = scaled_x(phase) + leaving + (arriving - leaving) * swing;
-                [x, (ratio * (ahead(phase)[1] - stance_y)).max(0.0)]
+                let share = (since - duty) / (1.0 - duty);
+                let free = swing.at(share, similar(strike + since));
+                // The curve between samples bends over a contact's edge, so a sample next to it is held near the print.
+                let (left, to_come) = (since - duty, 1.0 - since);
+                let print = [print_m + if left < to_come { 0.0 } else { stride_length_m }, 0.0];
+                let away = smooth(left.min(to_come) * CURVE_SAMPLES as f64 / HELD_SAMPLES);
+                let [x, y] = [0, 1].map(|axis| print[axis] + away * (free[axis] - print[axis]));
+                let y = cleared(y, share);
+                let load = 1.0 - smooth(share.min(1.0 - share) / EASING);
+                Place { at_m: [x + turns_m, y], load }
             })
             .collect();
         Self { places, print_m }
     }
 }
 
+/// What is added to a toe's path through the air so that it leaves one print and comes to the next at rest.
+struct Swing {
+    /// What the path misses at lift-off and at strike, m.
+    misses_m: [[f64; 2]; 2],
+    /// Its speed there, m per swing: as much as [`EASED`] says.
+    speeds_m: [[f64; 2]; 2],
+}
+
+impl Swing {
+    fn new(prints_m: [[f64; 2]; 2], path: impl Fn(f64) -> [f64; 2]) -> Self {
+        const STEP: f64 = 0.01;
+        let [start, end] = [path(0.0), path(1.0)];
+        let (after, before) = (path(STEP), path(1.0 - STEP));
+        let each = |f: &dyn Fn(usize) -> f64| [f(0), f(1)];
+        Self {
+            misses_m: [
+                each(&|axis| prints_m[0][axis] - start[axis]),
+                each(&|axis| prints_m[1][axis] - end[axis]),
+            ],
+            speeds_m: [
+                each(&|axis| EASED[axis] * (after[axis] - start[axis]) / STEP),
+                each(&|axis| EASED[axis] * (end[axis] - before[axis]) / STEP),
+            ],
+        }
+    }
+
+    /// The place at a share of the swing, where the path is at `raw_m`.
+    fn at(&self, share: f64, raw_m: [f64; 2]) -> [f64; 2] {
+        let (early, late) = (smooth(1.0 - share), smooth(share));
+        let [leaving, arriving] = [ease(share), -ease(1.0 - share)];
+        let [x, y] = [0, 1].map(|axis| {
+            raw_m[axis] + early * self.misses_m[0][axis] + late * self.misses_m[1][axis]
+                - leaving * self.speeds_m[0][axis]
+                - arriving * self.speeds_m[1][axis]
+        });
+        [x, y.max(0.0)]
+    }
+}
+
+/// A height over the ground, m, that is at least the clearance of this share of the swing, without a corner where it takes over.
+fn cleared(height_m: f64, share: f64) -> f64 {
+    let least_m = CLEARANCE_M * smooth(4.0 * share * (1.0 - share));
+    let half = 0.5 * (height_m - least_m);
+    0.5 * (height_m + least_m) + half.hypot(0.25 * least_m) - 0.125 * least_m
+}
+
+/// From 0 to 1 without a slope at either end.
+pub(crate) fn smooth(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Rises with slope 1 from 0 and is back at 0, without a slope, after [`EASING`].
+fn ease(share: f64) -> f64 {
+    let rest = 1.0 - (share / EASING).clamp(0.0, 1.0);
+    share * rest * rest
+}
+
 /// The phase of the old stride at the same point of a leg's step cycle: stance to stance, swing to swing, linearly.
-fn same_step(phase: f64, new: Contact, old: Contact) -> f64 {
+pub(crate) fn same_step(phase: f64, new: Contact, old: Contact) -> f64 {
     let since = (phase - f64::from(new.strike_phase)).rem_euclid(1.0);
     let (new_duty, old_duty) = (f64::from(new.duty_factor()), f64::from(old.duty_factor()));
     let old_since = if since < new_duty {
@@ -143,46 +258,59 @@ fn same_step(phase: f64, new: Contact, old: Contact) -> f64 {
     f64::from(old.strike_phase) + old_since
 }
 
-/// Solves a leg's five joints for every sample of the path, starting from the captured bends.
-fn solve_leg(stride: &mut Stride, skeleton: &Skeleton, limb: Limb, path: &ToePath) -> Option<()> {
-    let first = limb.first_bone();
-    for (k, target) in path.places.iter().enumerate() {
-        let mut pose = stride.pose(k as f32 / CURVE_SAMPLES as f32);
-        let error = reach(&mut pose, skeleton, limb, *target);
-        if error > REACH_TOLERANCE_M {
-            return None;
+/// Solves a leg's five joints for every sample of its path; returns what the worst of those at or near the ground lacks, m.
+///
+/// Samples are taken in turn from the middle of the swing, each beginning with most of what the last one was turned by, so
+/// that neighbours find neighbouring solutions.
+fn solve_leg(solved: &mut Stride, from: &Stride, skeleton: &Skeleton, limb: Limb, path: &ToePath) -> f64 {
+    let [free, loaded] = [false, true].map(|loaded| willingness(limb, loaded));
+    let contact = from.contacts[limb.index()];
+    let middle = contact.lift_off_phase + 0.5 * (1.0 - contact.duty_factor());
+    let first = (middle * CURVE_SAMPLES as f32) as usize;
+    let mut lacking_m: f64 = 0.0;
+    let mut turned: LegBends = [0.0; 5];
+    for k in (first..first + CURVE_SAMPLES).map(|k| k % CURVE_SAMPLES) {
+        let place = path.places[k];
+        let pose = from.pose(sample_phase(k) as f32);
+        let captured = leg_bends(&pose, limb);
+        let start = std::array::from_fn(|joint| captured[joint] + CARRIED * turned[joint]);
+        let willing = std::array::from_fn(|joint| free[joint] + place.load * (loaded[joint] - free[joint]));
+        let (mut bends, left_m) = reach_from(start, &pose, skeleton, limb, willing, place.at_m);
+        lacking_m = lacking_m.max(left_m - SLACK_M * (1.0 - place.load));
+        if place.load < 1.0 && left_m > REACH_TOLERANCE_M {
+            // In the air a leg need not be stretched to its utmost for a path that was made for the ground.
+            let nearer = pulled_in(&pose, skeleton, limb, place.at_m, left_m);
+            bends = reach_from(start, &pose, skeleton, limb, willing, nearer).0;
         }
-        for bone in first..first + 5 {
-            stride.curves.bends_rad[bone][k] = pose.bends_rad[bone];
+        turned = std::array::from_fn(|joint| bends[joint] - captured[joint]);
+        for (joint, bend) in bends.iter().enumerate() {
+            solved.curves.bends_rad[limb.first_bone() + joint][k] = *bend as f32;
         }
     }
-    Some(())
+    lacking_m
 }
 
-/// Moves a leg's toe to a place by damped least squares within the joint limits; returns what is left, m.
-fn reach(pose: &mut Pose, skeleton: &Skeleton, limb: Limb, [x, y]: [f64; 2]) -> f64 {
-    let first = limb.first_bone();
-    let mut left = f64::INFINITY;
-    for _ in 0..STEPS {
-        let joints = pose.joints(skeleton);
-        let toe = joints.toe(limb);
-        let miss = Vector2::new(x - f64::from(toe.x), y - f64::from(toe.y));
-        left = miss.norm();
-        if left < 1e-5 {
-            break;
-        }
-        let jacobian = SMatrix::<f64, 2, 5>::from_fn(|axis, joint| {
-            let lever = toe - joints.bases[first + joint];
-            WILLING[joint] * f64::from(if axis == 0 { -lever.y } else { lever.x })
-        });
-        let damped = jacobian * jacobian.transpose() + Matrix2::identity() * DAMPING_M * DAMPING_M;
-        let Some(solved) = damped.lu().solve(&miss) else { break };
-        let turn = jacobian.transpose() * solved;
-        for joint in 0..5 {
-            let [low, high] = skeleton.bones[first + joint].limits_rad;
-            let bend = &mut pose.bends_rad[first + joint];
-            *bend = (*bend + (WILLING[joint] * turn[joint]) as f32).clamp(low, high);
-        }
+/// A place out of reach drawn to the leg's root until a leg that lacked so much has a little to spare.
+fn pulled_in(pose: &Pose, skeleton: &Skeleton, limb: Limb, at_m: [f64; 2], left_m: f64) -> [f64; 2] {
+    let base = pose.joints(skeleton).bases[limb.first_bone()];
+    let root = [f64::from(base.x), f64::from(base.y)];
+    let distance_m = (at_m[0] - root[0]).hypot(at_m[1] - root[1]);
+    let share = 1.0 - (left_m + SPARE_M) / distance_m;
+    [0, 1].map(|axis| root[axis] + share * (at_m[axis] - root[axis]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn easing_takes_the_speed_away_and_nothing_else() {
+        let straight = |share: f64| [3.0 * share, 0.5 * share * (1.0 - share)];
+        let swing = Swing::new([[0.1, 0.0], [2.8, 0.0]], straight);
+        let at = |share: f64| swing.at(share, straight(share));
+        assert!((at(0.0)[0] - 0.1).abs() < 1e-12 && (at(1.0)[0] - 2.8).abs() < 1e-12);
+        let speed = |a: f64, b: f64| (at(b)[0] - at(a)[0]) / (b - a);
+        assert!(speed(0.0, 1e-4).abs() < 0.05 && speed(1.0 - 1e-4, 1.0).abs() < 0.05);
+        assert!((0..=1000).all(|k| at(f64::from(k) / 1000.0)[1] >= 0.0), "never below the ground");
     }
-    left
 }

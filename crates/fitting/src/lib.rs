@@ -1,16 +1,21 @@
 //! From annotated plates to fitted strides, contacts, gait laws, the motion database and the report.
 
+pub mod averaged;
 pub mod chain;
 pub mod checks;
 pub mod contacts;
+pub mod database_checks;
+mod derived_leap;
 pub mod expansion;
 pub mod export_problem;
 pub mod fit_document;
 pub mod footfalls;
 pub mod gait_analysis;
+pub mod gait_laws;
 pub mod held_out;
 pub mod law;
 pub mod layout;
+mod leg_reach;
 pub mod levenberg;
 pub mod motion_database;
 pub mod normal_matrix;
@@ -25,4 +30,5 @@ pub mod report;
 pub mod stride_curves;
 pub mod stride_fit;
 pub mod synthetic;
+pub mod tracked;
 pub mod weights;

@@ -2,140 +2,58 @@
 
 use muybridge_core::{
     BONE_COUNT, CURVE_SAMPLES, Contact, ContactLaw, Curves, DATABASE_SCHEMA, Database, Gait, LawKind, Limb,
-    MPS_PER_MPH, Pair, PowerLaw, Provenance, Skeleton, SpeedSource, Stride,
+    MPS_PER_MPH, Pair, PowerLaw, Provenance, Skeleton, Stride,
 };
 
 use crate::chain::Attachment;
-use crate::expansion::expand;
-use crate::law::{ContactPoint, LawFit, fit_law, shift_law};
+use crate::expansion::{Pace, expand};
+use crate::gait_laws::{Evidence, captured, gait_laws};
 use crate::layout::{BENDS, PITCH, ROOT_X, ROOT_Y, SLIDES};
-use crate::pipeline::{LEG_SHARE, PlateFit};
-use crate::published;
+use crate::pipeline::PlateFit;
 use crate::stride_curves::StrideCurves;
 
-/// Decimals kept in the file: a ten-thousandth of a radian is 0.02 mm at the end of a bone of 0.2 m.
-const DECIMALS: i32 = 5;
-/// With one capture the second point of the shifted curve lies at this multiple of its speed, as 9 mph to the amble's 7.
-const SECOND_SPEED: f64 = 9.0 / 7.0;
+/// Decimals kept in the file: what [`muybridge_core::CURVE_STEP`] keeps of the curves.
+const DECIMALS: i32 = 4;
 
-/// A law with what was needed to fit it, for the report.
-#[derive(Clone, Debug)]
-pub struct GaitLaw {
-    /// What goes into the database.
-    pub law: ContactLaw,
-    /// The data points.
-    pub points: Vec<ContactPoint>,
-    /// The fit with its statistics, where there are points enough.
-    pub fit: Option<LawFit>,
-}
-
-/// Laws of every gait that has a capture or a published curve, ordered by gait, then kind.
-pub fn gait_laws(fits: &[PlateFit]) -> Vec<GaitLaw> {
-    let published = published::laws();
-    let mut laws = Vec::new();
+/// The database of all that is known.
+pub fn build_database(evidence: &Evidence<'_>, skeleton: &Skeleton) -> Database {
+    let laws: Vec<ContactLaw> = gait_laws(evidence).into_iter().map(|law| rounded_law(law.law)).collect();
+    let mut strides: Vec<Stride> = Vec::new();
     for gait in Gait::ALL {
-        for kind in LawKind::ALL {
-            let of_gait: Vec<&PlateFit> = fits.iter().filter(|fit| fit.gait() == gait).collect();
-            let printed = published.iter().find(|law| law.gait == gait && law.law == kind);
-            laws.extend(captured_law(gait, kind, &of_gait, printed).or_else(|| {
-                let law = printed?.clone();
-                let clips = published::clips().into_iter().filter(|clip| clip.gait == gait);
-                Some(GaitLaw { law, points: clips.map(|clip| clip.point()).collect(), fit: None })
-            }));
+        let captures: Vec<Stride> =
+            evidence.of_gait(gait).into_iter().map(|fit| captured_stride(fit, skeleton)).collect();
+        if let Some(standing_for_it) = captures.first() {
+            strides.extend(expanded_strides(standing_for_it, &laws, skeleton));
         }
+        strides.extend(captures);
     }
-    laws
-}
-
-fn captured_law(
-    gait: Gait,
-    kind: LawKind,
-    fits: &[&PlateFit],
-    printed: Option<&ContactLaw>,
-) -> Option<GaitLaw> {
-    let points: Vec<ContactPoint> = fits
-        .iter()
-        .map(|fit| match kind {
-            LawKind::Support => fit.support_point(),
-            LawKind::LimbFore => fit.limb_point(Pair::Fore),
-            LawKind::LimbHind => fit.limb_point(Pair::Hind),
-        })
-        .collect();
-    let (curve, fit, provenance) = match (fit_law(&points), points.as_slice()) {
-        (Some(fit), _) => (fit.curve, Some(fit), captured(fits)),
-        (None, []) => return None,
-        (None, [first, ..]) => {
-            let (parent, source) = parent_law(gait, kind, fits[0].withers_height_m, printed);
-            let curve = shift_law(parent, *first, SECOND_SPEED * first.speed_m_s)?;
-            let from = vec![format!("plate {}", fits[0].id()), source];
-            let how = "one capture: the parent curve shifted in time to meet it (amble rule)".to_string();
-            (curve, None, Provenance::Derived { from, how })
-        }
-    };
-    let interval = fit.as_ref().and_then(|fit| fit.interval);
-    let law = ContactLaw { gait, law: kind, curve, n: points.len(), interval, provenance };
-    Some(GaitLaw { law, points, fit })
-}
-
-fn captured(fits: &[&PlateFit]) -> Provenance {
-    let inferred = fits.iter().any(|fit| fit.calibration.speed_source == SpeedSource::Inferred);
-    Provenance::Captured {
-        plates: fits.iter().map(|fit| fit.id().to_string()).collect(),
-        annotations_sha256: fits.iter().map(|fit| fit.plate.annotation_sha256.clone()).collect(),
-        speed: if inferred { SpeedSource::Inferred } else { fits[0].calibration.speed_source },
-    }
-}
-
-/// The curve a single capture borrows its shape from.
-fn parent_law(
-    gait: Gait,
-    kind: LawKind,
-    withers_height_m: f64,
-    printed: Option<&ContactLaw>,
-) -> (PowerLaw, String) {
-    match (kind, gait, printed) {
-        (LawKind::Support, _, Some(law)) => (law.curve, published::SOURCE.to_string()),
-        (LawKind::LimbFore, Gait::Gallop, _) => {
-            (PowerLaw { a: 0.82, b: -0.84 }, "galloping horses, forelimb (Witte et al. 2006)".to_string())
-        }
-        (LawKind::LimbHind, Gait::Gallop, _) => {
-            (PowerLaw { a: 0.61, b: -0.66 }, "galloping horses, hind limb (Witte et al. 2006)".to_string())
-        }
-        _ => {
-            let a = 0.80 * (LEG_SHARE * withers_height_m).powf(0.84);
-            (
-                PowerLaw { a, b: -0.87 },
-                "one limb's stance across species (Hoyt, Wickler & Cogger 2000)".to_string(),
-            )
-        }
-    }
-}
-
-/// The database of a set of fitted plates.
-pub fn build_database(fits: &[PlateFit], skeleton: &Skeleton) -> Database {
-    let laws: Vec<ContactLaw> = gait_laws(fits).into_iter().map(|law| rounded_law(law.law)).collect();
-    let mut strides = Vec::new();
-    for fit in fits {
-        let captured = captured_stride(fit);
-        strides.extend(expanded_strides(&captured, &laws, skeleton));
-        strides.push(captured);
-    }
+    strides.extend(ambles(&strides, &laws, skeleton));
     strides.sort_by(|a, b| {
         a.gait.cmp(&b.gait).then(a.speed_m_s.total_cmp(&b.speed_m_s)).then_with(|| a.id.cmp(&b.id))
     });
     Database { schema: DATABASE_SCHEMA, generator: "fit-gaits".into(), laws, strides }
 }
 
+/// Limb laws of a gait, fore and hind.
+fn limb_laws(laws: &[ContactLaw], gait: Gait) -> Option<[PowerLaw; 2]> {
+    let curve = |kind| laws.iter().find(|l| l.gait == gait && l.law == kind).map(|l| l.curve);
+    Some([curve(LawKind::LimbFore)?, curve(LawKind::LimbHind)?])
+}
+
+/// Speeds of a gait's range at whole miles per hour, with their number.
+fn speeds_m_s(gait: Gait) -> impl Iterator<Item = (u32, f64)> {
+    let [low, high] = gait.speed_range_mph().unwrap_or([1.0, 0.0]);
+    (low as u32..=high as u32).map(|mph| (mph, f64::from(mph) * MPS_PER_MPH))
+}
+
 /// The stride at every whole mile per hour of its gait's range, where the limb laws are known.
 fn expanded_strides(captured: &Stride, laws: &[ContactLaw], skeleton: &Skeleton) -> Vec<Stride> {
-    let curve = |kind| laws.iter().find(|l| l.gait == captured.gait && l.law == kind).map(|l| l.curve);
-    let (Some(fore), Some(hind)) = (curve(LawKind::LimbFore), curve(LawKind::LimbHind)) else {
-        return Vec::new();
-    };
-    let Some([low, high]) = captured.gait.speed_range_mph() else { return Vec::new() };
-    (low as u32..=high as u32)
-        .filter_map(|mph| {
-            let mut stride = expand(captured, skeleton, [fore, hind], f64::from(mph) * MPS_PER_MPH)?;
+    let Some(laws) = limb_laws(laws, captured.gait) else { return Vec::new() };
+    let own = laws.map(|law| law.contact_time_s(f64::from(captured.speed_m_s)));
+    speeds_m_s(captured.gait)
+        .filter_map(|(mph, speed_m_s)| {
+            let stance_ratios = [0, 1].map(|pair| laws[pair].contact_time_s(speed_m_s) / own[pair]);
+            let mut stride = expand(captured, skeleton, Pace { speed_m_s, stance_ratios })?;
             stride.id = format!("{}@{mph}mph", captured.id);
             round_stride(&mut stride);
             Some(stride)
@@ -143,8 +61,39 @@ fn expanded_strides(captured: &Stride, laws: &[ContactLaw], skeleton: &Skeleton)
         .collect()
 }
 
+/// The amble at every whole mile per hour, from the walk that stands for its gait; nothing where an amble was captured.
+fn ambles(strides: &[Stride], laws: &[ContactLaw], skeleton: &Skeleton) -> Vec<Stride> {
+    let walk = strides.iter().find(|s| s.gait == Gait::Walk && s.provenance.kind() == "captured");
+    let known = strides.iter().any(|stride| stride.gait == Gait::Amble);
+    let (Some(walk), Some(laws), false) = (walk, limb_laws(laws, Gait::Amble), known) else {
+        return Vec::new();
+    };
+    let stance_s = [Pair::Fore, Pair::Hind].map(|pair| {
+        let of_pair = Limb::ALL.into_iter().filter(|limb| limb.pair() == pair);
+        let duty: f64 = of_pair.map(|limb| f64::from(walk.contacts[limb.index()].duty_factor())).sum();
+        0.5 * duty * f64::from(walk.stride_time_s)
+    });
+    speeds_m_s(Gait::Amble)
+        .filter_map(|(mph, speed_m_s)| {
+            let stance_ratios = [0, 1].map(|pair| laws[pair].contact_time_s(speed_m_s) / stance_s[pair]);
+            let mut stride = expand(walk, skeleton, Pace { speed_m_s, stance_ratios })?;
+            stride.gait = Gait::Amble;
+            stride.id = format!("amble-of-{}@{mph}mph", walk.id);
+            stride.provenance = Provenance::Derived {
+                from: vec![walk.id.clone()],
+                how: format!(
+                    "no plate shows an amble: the walk's limb paths and footfall order at {speed_m_s:.1} m/s, with the amble's \
+                     stance times (amble rule)"
+                ),
+            };
+            round_stride(&mut stride);
+            Some(stride)
+        })
+        .collect()
+}
+
 /// A fitted plate as a stride of the database; phase 0 is the strike of the left hind.
-pub fn captured_stride(fit: &PlateFit) -> Stride {
+pub fn captured_stride(fit: &PlateFit, skeleton: &Skeleton) -> Stride {
     let curves = StrideCurves::new(&fit.fit);
     let origin = fit.analysis.contacts[Limb::LH.index()].strike.phase;
     let sample = |dof: usize, mean: f64| -> Vec<f32> {
@@ -173,7 +122,7 @@ pub fn captured_stride(fit: &PlateFit) -> Stride {
         lead: fit.analysis.lead,
         speed_m_s: fit.calibration.speed_m_s.value as f32,
         stride_time_s: fit.fit.stride_time.seconds as f32,
-        withers_height_m: fit.withers_height_m as f32,
+        withers_height_m: fit.fit.withers_height_m(skeleton) as f32,
         bone_lengths_m: (0..BONE_COUNT)
             .map(|bone| fit.fit.problem.bone_length_m(bone, shared) as f32)
             .collect(),

@@ -40,6 +40,8 @@ pub struct StrideObservation {
     pub facing: Facing,
     /// Mean speed, m/s.
     pub speed_m_s: f64,
+    /// Withers height, m, where the pictures tell it: the size the animal's bones are drawn to.
+    pub withers_height_m: Option<f64>,
     /// The panels.
     pub panels: Vec<PanelObservation>,
 }
@@ -78,10 +80,11 @@ impl StrideObservation {
                 let panel = annotation.panels.iter().find(|p| p.panel == camera.panel)?;
                 let points = Keypoint::all().filter_map(|keypoint| {
                     let placed = panel.keypoints.get(keypoint)?;
-                    let hand_sd_px = match placed.state {
+                    let of_state = match placed.state {
                         KeypointState::Visible => annotation.visible_sd_px,
                         KeypointState::Occluded | KeypointState::Absent => annotation.occluded_sd_px,
                     };
+                    let hand_sd_px = placed.sd_px.unwrap_or(of_state);
                     Some(PointObservation {
                         keypoint,
                         at_px: placed.place()?,
@@ -94,7 +97,8 @@ impl StrideObservation {
                 Some(PanelObservation { camera: *camera, points: points.collect(), contacts })
             })
             .collect();
-        Self { facing, speed_m_s: calibration.speed_m_s.value, panels }
+        let withers_height_m = calibration.withers_height_m.map(|height| height.value);
+        Self { facing, speed_m_s: calibration.speed_m_s.value, withers_height_m, panels }
     }
 
     /// Seconds from the first to the last panel.

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use muybridge_capture::{CalibrationError, Plate, PlateCalibration, PlateError, calibrate};
+use muybridge_capture::{
+    CLOSING_SD_PANELS, CalibrationError, LEG_SHARE, Plate, PlateCalibration, PlateError, calibrate,
+};
 use muybridge_core::{Gait, Pair, Skeleton};
 
 use crate::contacts::{ContactError, find_contacts};
@@ -15,8 +17,6 @@ use crate::weights::Weights;
 
 /// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.80665;
-/// Height of hip or shoulder joint over the ground as a share of withers height, for stance sweep and Froude number.
-pub(crate) const LEG_SHARE: f64 = 0.77;
 
 /// A fitted plate.
 #[derive(Clone, Debug)]
@@ -119,15 +119,18 @@ fn known_stride_time(plate: &Plate, observation: &StrideObservation) -> Option<S
     let from_time = given.map(|known| StrideTime { seconds: known.value, sd_s: known.sd });
     let first = f64::from(plate.annotation.stride.first);
     let closes = plate.annotation.stride.closes_after_panels.and_then(|panels| {
-        let at = first + panels;
         let time = |panel: f64| {
             observation.panels.iter().find(|p| f64::from(p.camera.panel) == panel).map(|p| p.camera.time_s)
         };
-        let (low, high) = (time(at.floor())?, time(at.ceil()).or_else(|| time(at.floor()))?);
-        let start = observation.panels.first()?.camera.time_s;
-        // A person tells the closing panel to about a quarter of a panel.
-        let seconds = low + (high - low) * at.fract() - start;
-        Some(StrideTime { seconds, sd_s: 0.25 * seconds / panels })
+        let (start, last) = (observation.panels.first()?, observation.panels.last()?);
+        let mean_interval = observation.duration_s() / f64::from(last.camera.panel - start.camera.panel);
+        // After the last panel, time goes on as it did on the whole.
+        let beyond = |panel: f64| last.camera.time_s + mean_interval * (panel - f64::from(last.camera.panel));
+        let at = first + panels;
+        let low = time(at.floor()).unwrap_or_else(|| beyond(at.floor()));
+        let high = time(at.ceil()).unwrap_or_else(|| beyond(at.ceil()));
+        let seconds = low + (high - low) * at.fract() - start.camera.time_s;
+        (seconds > 0.0).then_some(StrideTime { seconds, sd_s: CLOSING_SD_PANELS * seconds / panels })
     });
     closes.or(from_time)
 }
@@ -138,8 +141,13 @@ impl PlateFit {
         &self.plate.manifest.id
     }
 
-    /// Gait as titled.
+    /// Gait: as the annotator judged it from the footfalls, else as titled.
     pub fn gait(&self) -> Gait {
+        self.plate.annotation.gait(&self.plate.manifest)
+    }
+
+    /// Gait as titled.
+    pub fn titled(&self) -> Gait {
         self.plate.manifest.gait
     }
 
@@ -178,8 +186,10 @@ impl PlateFit {
     fn implausible(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let implied = self.analysis.implied;
-        if !implied.agrees_with(self.gait()) {
-            warnings.push(format!("footfalls imply a {}, the title says {}", implied.name(), self.gait()));
+        for (gait, who) in [(self.titled(), "the title"), (self.gait(), "the annotation")] {
+            if !implied.agrees_with(gait) && (who == "the title" || gait != self.titled()) {
+                warnings.push(format!("footfalls imply a {}, {who} says {gait}", implied.name()));
+            }
         }
         for (pair, name) in [(Pair::Fore, "fore"), (Pair::Hind, "hind")] {
             let sweep = self.stance_sweep_deg(pair);

@@ -95,6 +95,7 @@ impl StrideProblem {
         problem.add_stances(observation, &turns);
         problem.add_smoothness(&turns);
         problem.add_priors();
+        problem.add_size(skeleton, observation);
         problem.add_couplings(skeleton, observation);
         problem.linear_normal = problem.normal_of_linear_rows();
         problem.bounds = problem.box_limits();
@@ -204,7 +205,6 @@ impl StrideProblem {
             row(self.layout.panel(slot, SLIDES), self.weights.slide_prior_sd, 0.0);
             row(self.layout.panel(slot, SLIDES + 1), self.weights.slide_prior_sd, 0.0);
         }
-        row(self.layout.shared(LOG_SCALE), self.weights.log_scale_sd, 0.0);
         let sd = self.weights.head_direction_sd;
         for slot in 0..self.layout.panels {
             // The head's direction in the world is the sum of the bends from the root up to it.
@@ -212,12 +212,31 @@ impl StrideProblem {
             let terms = bends.map(|dof| (self.layout.panel(slot, dof), 1.0 / sd)).collect();
             self.linear.push(LinearRow { terms, constant: -self.weights.head_direction / sd });
         }
+        // The neck bends in an even curve: only its ends are seen, and three bones between two points could fold anyhow.
+        let sd = self.weights.neck_evenness_sd;
+        for slot in 0..self.layout.panels {
+            for bone in bone::NECK..bone::NECK_LAST {
+                let [here, next] = [bone, bone + 1].map(|i| self.layout.panel(slot, BENDS + i));
+                let constant = (self.chain.rest_rad[bone + 1] - self.chain.rest_rad[bone]) / sd;
+                self.linear.push(LinearRow { terms: vec![(here, 1.0 / sd), (next, -1.0 / sd)], constant });
+            }
+        }
         let sd = self.weights.log_length_sd;
         for length in 0..LOG_SCALE {
             let terms =
                 vec![(self.layout.shared(length), 1.0 / sd), (self.layout.shared(LOG_SCALE), -1.0 / sd)];
             self.linear.push(LinearRow { terms, constant: 0.0 });
         }
+    }
+
+    /// The animal's size: as the withers height tells it, else near the reference's.
+    fn add_size(&mut self, skeleton: &Skeleton, observation: &StrideObservation) {
+        let reference = f64::from(skeleton.withers_height_m);
+        let (mean, sd) = observation.withers_height_m.map_or((0.0, self.weights.log_scale_sd), |height_m| {
+            ((height_m / reference).ln(), self.weights.log_size_sd)
+        });
+        let terms = vec![(self.layout.shared(LOG_SCALE), 1.0 / sd)];
+        self.linear.push(LinearRow { terms, constant: -mean / sd });
     }
 
     /// Reciprocal apparatus and passive fetlock.

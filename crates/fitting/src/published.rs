@@ -72,6 +72,7 @@ pub fn laws() -> Vec<ContactLaw> {
                 curve,
                 n: points.len(),
                 interval: None,
+                borrowed: None,
                 provenance,
             })
         })

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use muybridge_capture::{Annotation, BodyPoint, Keypoint, KeypointState, Placed, PlateCalibration};
+use muybridge_capture::{Annotation, Keypoint, KeypointState, Placed, PlateCalibration};
 
 use crate::held_out::quantile;
 use crate::stride_fit::rms;
@@ -66,8 +66,7 @@ impl Repeatability {
                 points.push(PointDistance { panel: panel.panel, keypoint, visible, px, metres });
             }
         }
-        let standing = calibration.withers_height_m.map(|height| height.value);
-        let withers_height_m = standing.or_else(|| moving_withers_height_m(first, calibration))?;
+        let withers_height_m = calibration.withers_height_m?.value;
         (!points.is_empty()).then_some(Self { points, withers_height_m })
     }
 
@@ -93,20 +92,6 @@ impl Repeatability {
         };
         Keypoint::all().filter_map(of_type).collect()
     }
-}
-
-/// Mean height of the withers over the stride, m: within a few hundredths of the standing height at any gait.
-fn moving_withers_height_m(annotation: &Annotation, calibration: &PlateCalibration) -> Option<f64> {
-    let withers = Keypoint::Body(BodyPoint::Withers);
-    let heights: Vec<f64> = calibration
-        .stride
-        .iter()
-        .filter_map(|camera| {
-            let panel = annotation.panels.iter().find(|panel| panel.panel == camera.panel)?;
-            Some(camera.world_from_plate(panel.keypoints.place(withers)?, 0.0)[1])
-        })
-        .collect();
-    (!heights.is_empty()).then(|| heights.iter().sum::<f64>() / heights.len() as f64)
 }
 
 impl fmt::Display for Repeatability {

@@ -10,6 +10,7 @@ mod curve;
 mod gaits;
 mod hurdle;
 mod leap;
+mod leap_body;
 mod leap_numbers;
 mod legs;
 mod motion;
@@ -29,6 +30,8 @@ use crate::weights::Weights;
 use gaits::GaitNumbers;
 pub use hurdle::Hurdle;
 use leap::Leap;
+pub(crate) use leap_body::{LeapBody, LeapStance};
+pub(crate) use legs::eased;
 use motion::{CANTER, Motion, TROT};
 use muybridge_core::Random;
 pub use posed::{HoofPrint, Posed};
@@ -164,7 +167,12 @@ impl SyntheticStride {
         let mut random = Random::new(!self.seed);
         let panels =
             (0..self.poses.len()).map(|panel| self.observe_panel(panel, placing, weights, &mut random));
-        StrideObservation { facing: self.facing, speed_m_s: self.speed_m_s, panels: panels.collect() }
+        StrideObservation {
+            facing: self.facing,
+            speed_m_s: self.speed_m_s,
+            withers_height_m: None,
+            panels: panels.collect(),
+        }
     }
 
     /// A battery of cameras that the horse trips as it passes each.

@@ -28,12 +28,17 @@ pub struct Weights {
     pub head_direction: f64,
     /// Standard deviation of the head's direction, rad.
     pub head_direction_sd: f64,
+    /// Difference of neighbouring neck bones in their bends from rest, rad: 6 degrees, so that the neck curves instead of folding.
+    pub neck_evenness_sd: f64,
     /// Scapula slide against none, m.
     pub slide_prior_sd: f64,
     /// Log-length against the scaled reference.
     pub log_length_sd: f64,
-    /// Log-scale against the reference.
+    /// Log-scale against the reference, where nothing tells the animal's size.
     pub log_scale_sd: f64,
+    /// Log-scale against the withers height, where the pictures tell it: a moving horse's withers are within a few hundredths of
+    /// their standing height, and proportions differ by as much.
+    pub log_size_sd: f64,
     /// Toe over the ground in a stance panel, m.
     pub stance_height_sd: f64,
     /// Toe of neighbouring panels of one stance against each other, m.
@@ -87,9 +92,11 @@ impl Default for Weights {
             pitch_prior_sd: 15f64.to_radians(),
             head_direction: (-42f64).to_radians(),
             head_direction_sd: 12f64.to_radians(),
+            neck_evenness_sd: 6f64.to_radians(),
             slide_prior_sd: 0.03,
             log_length_sd: 0.10,
             log_scale_sd: 0.2,
+            log_size_sd: 0.04,
             stance_height_sd: 0.025,
             stance_slip_sd: 0.02,
         }

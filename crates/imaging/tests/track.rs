@@ -182,7 +182,8 @@ fn nothing_at_all_is_no_reason_to_fail() {
     let empty = PanelPoints { view: &shots[0].view, silhouette: None, points: &nothing };
     assert!(propose(&[empty], &shots[1].view, None).is_empty());
 
-    let place = |at_px| Placed { at_px: Some(at_px), state: KeypointState::Visible, by: PlacedBy::Hand };
+    let place =
+        |at_px| Placed { at_px: Some(at_px), state: KeypointState::Visible, by: PlacedBy::Hand, sd_px: None };
     let everywhere = |at: fn(usize) -> [f64; 2]| {
         let mut points = Keypoints::default();
         Keypoint::all().enumerate().for_each(|(i, keypoint)| points.insert(keypoint, place(at(i))));

@@ -224,6 +224,7 @@ fn change_point(draft: &mut Draft, panel: u32, random: &mut Random) {
         at_px: (state != KeypointState::Absent).then_some(at_px),
         state,
         by: *pick(random, &[PlacedBy::Hand, PlacedBy::Tracked]),
+        sd_px: None,
     };
     let keypoints = &mut draft.panel_mut(panel).keypoints;
     if random.uniform() < 0.2 { keypoints.remove(keypoint) } else { keypoints.insert(keypoint, placed) }

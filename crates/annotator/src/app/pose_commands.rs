@@ -114,7 +114,7 @@ impl Session {
         let by = known.map_or(PlacedBy::Hand, |placed| placed.by);
         let label = format!("{} is {}", crate::colors::name(keypoint), format!("{state:?}").to_lowercase());
         self.edit(&label, |draft| {
-            draft.panel_mut(panel).keypoints.insert(keypoint, Placed { at_px, state, by });
+            draft.panel_mut(panel).keypoints.insert(keypoint, Placed { at_px, state, by, sd_px: None });
         });
         if state == KeypointState::Absent && self.tool == Tool::Guided {
             self.select_unplaced();
@@ -130,7 +130,7 @@ impl Session {
     fn nudge(&mut self, [dx, dy]: [f64; 2]) {
         let Some((keypoint, placed)) = self.selected_point() else { return };
         let Some([x, y]) = placed.place() else { return };
-        let placed = Placed { at_px: Some([x + dx, y + dy]), by: PlacedBy::Hand, ..placed };
+        let placed = Placed { at_px: Some([x + dx, y + dy]), by: PlacedBy::Hand, sd_px: None, ..placed };
         let (label, panel) = (format!("Nudge {}", crate::colors::name(keypoint)), self.panel);
         self.edit(&label, |draft| draft.panel_mut(panel).keypoints.insert(keypoint, placed));
     }

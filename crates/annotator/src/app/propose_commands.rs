@@ -102,7 +102,7 @@ impl Session {
                 let state = known.map_or(KeypointState::Visible, |placed| placed.state);
                 let state = if state == KeypointState::Absent { KeypointState::Occluded } else { state };
                 let at_px = Some(fit.place_px(slot, kinematics, keypoint));
-                (keypoint, Placed { at_px, state, by: PlacedBy::Fitted })
+                (keypoint, Placed { at_px, state, by: PlacedBy::Fitted, sd_px: None })
             })
             .collect();
         self.take_proposed("Propose from the fit", panel, &points);

@@ -163,9 +163,7 @@ pub fn inspector(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>)
 /// Title, animal and so on; a field is one step when it is left.
 fn words(ui: &mut Ui, session: &mut Session) {
     Grid::new("words").num_columns(2).spacing([8.0, 4.0]).show(ui, |ui| {
-        ui.label("Gait of the title");
-        gait(ui, session);
-        ui.end_row();
+        gaits(ui, session);
         for field in Words::ALL {
             ui.label(field.name());
             let mut text = field.of(session).clone();
@@ -239,17 +237,34 @@ impl Words {
     }
 }
 
-fn gait(ui: &mut Ui, session: &mut Session) {
-    let now = session.draft().manifest.gait;
-    let list = egui::ComboBox::from_id_salt("gait").selected_text(now.to_string()).show_ui(ui, |ui| {
+/// The gait of the title, and the one the footfalls show where somebody judged otherwise.
+fn gaits(ui: &mut Ui, session: &mut Session) {
+    let titled = session.draft().manifest.gait;
+    let judged = session.draft().annotation.gait;
+    gait_list(ui, "Gait of the title", &titled.to_string(), |ui| {
         for gait in Gait::ALL {
-            if ui.selectable_label(now == gait, gait.to_string()).clicked() {
+            if ui.selectable_label(titled == gait, gait.to_string()).clicked() {
                 session.edit("Gait of the title", |draft| draft.manifest.gait = gait);
             }
         }
     });
-    let name = format!("Gait of the title: {now}");
-    list.response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::ComboBox, true, &name));
+    let shown = judged.map_or("as titled".to_string(), |gait| gait.to_string());
+    gait_list(ui, "Gait by its footfalls", &shown, |ui| {
+        for gait in std::iter::once(None).chain(Gait::ALL.map(Some)) {
+            let name = gait.map_or("as titled".to_string(), |gait| gait.to_string());
+            if ui.selectable_label(judged == gait, name).clicked() {
+                session.edit("Gait by its footfalls", |draft| draft.annotation.gait = gait);
+            }
+        }
+    });
+}
+
+fn gait_list(ui: &mut Ui, name: &str, shown: &str, list: impl FnOnce(&mut Ui)) {
+    ui.label(name);
+    let list = egui::ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, list);
+    let label = format!("{name}: {shown}");
+    list.response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::ComboBox, true, &label));
+    ui.end_row();
 }
 
 /// Brightness for looking, not for the files.

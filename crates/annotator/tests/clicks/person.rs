@@ -153,7 +153,7 @@ impl Person {
     fn puts(&mut self, window: &mut Window, panel: u32, keypoint: Keypoint, state: KeypointState) {
         let ([x, y], sd) = (self.true_px(panel, keypoint), self.sd_px(panel, keypoint));
         let [a, b] = self.hand[(panel as usize - 1) * muybridge_capture::KEYPOINT_COUNT + keypoint.index()];
-        let placed = Placed { at_px: Some([x + sd * a, y + sd * b]), state, by: PlacedBy::Hand };
+        let placed = Placed { at_px: Some([x + sd * a, y + sd * b]), state, by: PlacedBy::Hand, sd_px: None };
         window.session().edit("Place", |draft| draft.panel_mut(panel).keypoints.insert(keypoint, placed));
         self.count.points += 1;
     }

@@ -46,6 +46,7 @@ pub(crate) fn empty_annotation(manifest: &Manifest, plate: String) -> Annotation
         annotator: String::new(),
         visible_sd_px: ASSUMED_SD_PX[0],
         occluded_sd_px: ASSUMED_SD_PX[1],
+        gait: None,
         stride: StrideSpan {
             first: numbers().min().unwrap_or(1),
             last: numbers().max().unwrap_or(1),

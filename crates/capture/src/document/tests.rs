@@ -14,7 +14,7 @@ fn specimen(folder: &Path) -> PathBuf {
 }
 
 fn place(x: f64) -> Placed {
-    Placed { at_px: Some([x, 150.0]), state: KeypointState::Visible, by: PlacedBy::Hand }
+    Placed { at_px: Some([x, 150.0]), state: KeypointState::Visible, by: PlacedBy::Hand, sd_px: None }
 }
 
 fn poll() -> Keypoint {

@@ -113,7 +113,10 @@ impl<'a> Collector<'a> {
                 Origin::Stated(by) | Origin::Carried(by) => by,
                 Origin::Unsaid => PlacedBy::Hand,
             };
-            panels.entry(panel).or_default().insert(keypoint, Placed { at_px: taken.at_px, state, by });
+            panels
+                .entry(panel)
+                .or_default()
+                .insert(keypoint, Placed { at_px: taken.at_px, state, by, sd_px: None });
             said.insert((panel, keypoint), taken.said);
         }
         Import { panels: panels.into_iter().collect(), notes: self.notes.sentences(), said }

@@ -82,6 +82,7 @@ fn with_what_was_known(new: Placed, old: &Placed, said: &Said) -> Placed {
             at_px: old.at_px,
             state: said.state.unwrap_or(old.state),
             by: if by == Origin::Unsaid { old.by } else { new.by },
+            sd_px: old.sd_px,
         },
     }
 }

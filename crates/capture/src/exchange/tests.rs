@@ -101,7 +101,7 @@ fn filled(seed: u64) -> Annotation {
             let at = [0, 1].map(|axis| at[axis] * f64::from(SIZE_PX[axis]));
             let at_px = (state != KeypointState::Absent)
                 .then(|| Cutouts.plate_from_panel(panel, at).unwrap().map(|v| (v * 10.0).round() / 10.0));
-            keypoints.insert(keypoint, Placed { at_px, state, by });
+            keypoints.insert(keypoint, Placed { at_px, state, by, sd_px: None });
         }
         annotation.panels.push(PanelAnnotation { keypoints, ..PanelAnnotation::empty(panel) });
     }
@@ -135,7 +135,7 @@ fn imported_as(
 
 /// What a format makes of a point; none where it forgets it.
 fn kept(placed: &Placed, format: Format, likelihoods: bool) -> Option<Placed> {
-    let Placed { at_px, state, by } = *placed;
+    let Placed { at_px, state, by, .. } = *placed;
     let (state, by) = match format {
         Format::Csv => (state, by),
         _ if at_px.is_none() => return None,
@@ -144,7 +144,7 @@ fn kept(placed: &Placed, format: Format, likelihoods: bool) -> Option<Placed> {
         Format::DeepLabCut if likelihoods => (state, PlacedBy::Tracked),
         Format::DeepLabCut => (KeypointState::Visible, PlacedBy::Hand),
     };
-    Some(Placed { at_px, state, by })
+    Some(Placed { at_px, state, by, sd_px: None })
 }
 
 fn assert_comes_back(annotation: &Annotation, import: &Import, format: Format, likelihoods: bool) {
@@ -212,7 +212,8 @@ fn the_centre_of_the_first_pixel_is_where_each_format_has_it() {
     let mut keypoints = Keypoints::default();
     let at_px = Cutouts.plate_from_panel(2, [0.5, 0.5]);
     let muzzle = Keypoint::all().next().unwrap();
-    keypoints.insert(muzzle, Placed { at_px, state: KeypointState::Visible, by: PlacedBy::Hand });
+    keypoints
+        .insert(muzzle, Placed { at_px, state: KeypointState::Visible, by: PlacedBy::Hand, sd_px: None });
     annotation.panels.push(PanelAnnotation { keypoints, ..PanelAnnotation::empty(2) });
     let text =
         |format| String::from_utf8(exported(&annotation, format, None).files.swap_remove(0).1).unwrap();

@@ -1,10 +1,12 @@
 //! `muybridge`: one file a subcommand.
 
 mod annotations;
+mod average;
 mod canvas;
 mod contact_sheet;
 mod exchange;
 mod plates;
+mod tracks;
 
 use std::process::ExitCode;
 
@@ -25,16 +27,23 @@ enum Command {
     /// Look at annotations and exchange them: `show`, `check`, `compare`, `export`, `import`.
     #[command(subcommand)]
     Annotations(annotations::AnnotationsCommand),
+    /// Average the strides of a tracked clip into one, written as a plate to fit.
+    Average(average::AverageArguments),
     /// Which plates there are: `list`.
     #[command(subcommand)]
     Plates(plates::PlatesCommand),
+    /// Strides and contacts out of machine-tracked films: `measure`, `contacts`.
+    #[command(subcommand)]
+    Tracks(tracks::TracksCommand),
 }
 
 /// Runs the program.
 pub fn run(arguments: &Muybridge) -> ExitCode {
     let result = match &arguments.command {
         Command::Annotations(command) => command.run(),
+        Command::Average(arguments) => arguments.run(),
         Command::Plates(command) => command.run(),
+        Command::Tracks(command) => command.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -62,7 +62,7 @@ fn stride(fitted: &PlateFit) -> Value {
         "plate": fitted.id(),
         "gait": fitted.gait().name(),
         "implied_gait": analysis.implied.name(),
-        "agrees_with_title": analysis.implied.agrees_with(fitted.gait()),
+        "agrees_with_title": analysis.implied.agrees_with(fitted.titled()),
         "lead": analysis.lead,
         "speed_m_s": with_sd([speed.value, speed.sd]),
         "speed_source": fitted.calibration.speed_source,

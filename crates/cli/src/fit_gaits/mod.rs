@@ -1,6 +1,7 @@
 //! The main job: read `annotations/`, fit everything, print one table, write the database and the report.
 
 mod check;
+mod compare;
 mod json;
 mod plates;
 mod preset;
@@ -14,7 +15,8 @@ use clap::{Parser, ValueEnum};
 use muybridge_capture::{write_atomically, write_json};
 use muybridge_core::{Database, Skeleton};
 use muybridge_fitting::fit_document::FitDocument;
-use muybridge_fitting::motion_database::{GaitLaw, build_database, gait_laws};
+use muybridge_fitting::gait_laws::{Evidence, GaitLaw, gait_laws};
+use muybridge_fitting::motion_database::build_database;
 use muybridge_fitting::pipeline::PlateFit;
 
 use crate::{EXIT_FAILED, EXIT_USAGE, report_error};
@@ -99,8 +101,16 @@ fn fit_annotations(folder: &Path, only: &[String], skeleton: &Skeleton) -> anyho
     if paths.is_empty() {
         failures.push(format!("{}: holds no annotation file (*.json)", folder.display()));
     }
-    let laws = gait_laws(&fits);
-    let database = build_database(&fits, skeleton);
+    let (walks, walks_sha256) = match plates::tracked_walks(folder) {
+        Ok(table) => table,
+        Err(error) => {
+            failures.push(error.to_string());
+            Default::default()
+        }
+    };
+    let evidence = Evidence { fits: &fits, walks: &walks, walks_sha256: &walks_sha256 };
+    let laws = gait_laws(&evidence);
+    let database = build_database(&evidence, skeleton);
     Ok(Outcome { fits, laws, database, failures })
 }
 
@@ -130,7 +140,8 @@ fn write_report(arguments: &Arguments, outcome: &Outcome, skeleton: &Skeleton) -
     for fitted in &outcome.fits {
         write_json(&folder.join(format!("{}.fit.json", fitted.id())), &FitDocument::new(fitted, skeleton))?;
     }
-    let page = muybridge_fitting::report::html(&outcome.fits, &outcome.laws, &outcome.failures, skeleton);
+    let Outcome { fits, laws, database, failures } = outcome;
+    let page = muybridge_fitting::report::html(fits, laws, database, failures, skeleton);
     let path = folder.join("index.html");
     write_atomically(&path, page.as_bytes())?;
     eprintln!("report: {}", path.display());

@@ -4,10 +4,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use muybridge_capture::hash_file;
 use muybridge_core::Skeleton;
 use muybridge_fitting::pipeline::{PlateFit, fit_plate};
+use muybridge_fitting::tracked::strides::MeasuredStride;
+use muybridge_fitting::tracked::table::read_table;
 use muybridge_fitting::weights::Weights;
 use rayon::prelude::*;
+
+/// Table of strides measured on tracked walks, beside the annotations.
+const WALKS: &str = "tracked-walks.csv";
 
 /// The annotation files of a folder in the order of their names, or only those asked for.
 pub(super) fn annotation_paths(folder: &Path, only: &[String]) -> anyhow::Result<Vec<PathBuf>> {
@@ -35,6 +41,15 @@ pub(super) fn annotation_paths(folder: &Path, only: &[String]) -> anyhow::Result
     }
     paths.retain(|path| only.contains(&stem(path)));
     Ok(paths)
+}
+
+/// The measured strides of the tracked walks beside the annotations, with the table's hash; nothing where there is no table.
+pub(super) fn tracked_walks(folder: &Path) -> anyhow::Result<(Vec<MeasuredStride>, String)> {
+    let path = folder.join(WALKS);
+    if !path.exists() {
+        return Ok(Default::default());
+    }
+    Ok((read_table(&path)?, hash_file(&path)?))
 }
 
 /// Fits all plates, each on one thread; results and failures in the order of the paths whatever the number of threads.

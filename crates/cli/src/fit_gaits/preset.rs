@@ -2,7 +2,7 @@
 
 use anyhow::bail;
 use muybridge_core::{DATABASE_SCHEMA, Database, Gait};
-use muybridge_fitting::motion_database::{GaitLaw, gait_laws};
+use muybridge_fitting::gait_laws::{Evidence, GaitLaw, gait_laws};
 use muybridge_fitting::published::clips;
 
 use super::Outcome;
@@ -16,7 +16,7 @@ const AMBLE_TOLERANCE: f64 = 1e-3;
 
 /// The laws of the published gaits, or of those asked for.
 pub(super) fn outcome(only: &[String]) -> anyhow::Result<Outcome> {
-    let mut laws = gait_laws(&[]);
+    let mut laws = gait_laws(&Evidence::default());
     let mut wanted = Vec::new();
     for name in only {
         match Gait::from_name(name).filter(|gait| laws.iter().any(|law| law.law.gait == *gait)) {

@@ -2,12 +2,12 @@
 
 use comfy_table::{Table, presets::UTF8_FULL};
 use muybridge_core::{MPS_PER_MPH, Pair};
+use muybridge_fitting::gait_laws::GaitLaw;
 use muybridge_fitting::held_out::quantile;
-use muybridge_fitting::motion_database::GaitLaw;
 use muybridge_fitting::pipeline::PlateFit;
 use muybridge_fitting::stride_fit::{PointResidual, rms};
 
-use super::Outcome;
+use super::{Outcome, compare};
 
 const HEADER: [&str; 13] = [
     "gait",
@@ -40,6 +40,7 @@ pub(super) fn text(outcome: &Outcome) -> String {
     for fitted in &outcome.fits {
         text.push_str(&plate_notes(fitted));
     }
+    text.push_str(&compare::text(&outcome.fits, &outcome.database));
     text.push_str(
         "A law by one or two points has no interval; an error of 1 % in each T_c moves b by 0.03 to 0.08.\n\
          Support is the time in which at least one hoof is down (what the published numbers most likely are);\n\
@@ -69,7 +70,7 @@ fn plate_row(fitted: &PlateFit, laws: &[&GaitLaw]) -> Vec<String> {
     let rms_m = rms(fitted.residuals.iter().map(PointResidual::metres));
     let rms_px = rms(fitted.residuals.iter().map(PointResidual::px));
     let worst = fitted.residuals.iter().max_by(|a, b| a.metres().total_cmp(&b.metres()));
-    let agreement = if analysis.implied.agrees_with(fitted.gait()) { "agrees" } else { "DIFFERS" };
+    let agreement = if analysis.implied.agrees_with(fitted.titled()) { "agrees" } else { "DIFFERS" };
     let lead = analysis.lead.map_or(String::new(), |lead| format!("\n{:?} lead", lead.fore).to_lowercase());
     vec![
         fitted.gait().to_string(),

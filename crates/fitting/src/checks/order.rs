@@ -16,12 +16,12 @@ pub(super) fn concerns(annotation: &Annotation, manifest: &Manifest, footfalls: 
         concerns.extend(contradictions(lane));
         concerns.extend(no_stance(annotation, lane));
         // A leap has a take-off and a landing.
-        if manifest.gait != Gait::Leap {
+        if annotation.gait(manifest) != Gait::Leap {
             concerns.extend(second_stance(footfalls, lane));
         }
     }
     if let Ok(contacts) = contacts(footfalls, manifest.facing) {
-        concerns.extend(of_gait(&GaitAnalysis::new(contacts, [1.0, 0.0]), manifest.gait));
+        concerns.extend(of_gait(&GaitAnalysis::new(contacts, [1.0, 0.0]), annotation.gait(manifest)));
     }
     concerns
 }

@@ -48,7 +48,8 @@ fn place(plate: &Plate, index: usize, keypoint: Keypoint) -> [f64; 2] {
 }
 
 fn set(plate: &mut Plate, index: usize, keypoint: Keypoint, at_px: [f64; 2]) {
-    let placed = Placed { at_px: Some(at_px), state: KeypointState::Visible, by: PlacedBy::Hand };
+    let placed =
+        Placed { at_px: Some(at_px), state: KeypointState::Visible, by: PlacedBy::Hand, sd_px: None };
     plate.annotation.panels[index].keypoints.insert(keypoint, placed);
 }
 
@@ -128,9 +129,10 @@ fn nothing_in_a_draft_makes_a_check_or_the_footfalls_fail() {
         for panel in &mut annotation.panels {
             let keypoint = Keypoint::all().nth(number(26)).unwrap();
             let at_px = Some([wild[number(5)], wild[number(5)]]);
-            panel
-                .keypoints
-                .insert(keypoint, Placed { at_px, state: KeypointState::Visible, by: PlacedBy::Hand });
+            panel.keypoints.insert(
+                keypoint,
+                Placed { at_px, state: KeypointState::Visible, by: PlacedBy::Hand, sd_px: None },
+            );
             panel.ground_px = [panel.ground_px, None, Some([[wild[number(5)]; 2]; 2])][number(3)];
         }
         for (side, pair) in LANES {
@@ -292,7 +294,8 @@ fn labels_only(gait: Gait, panel_of: impl Fn(usize) -> usize) -> Plate {
     for (k, panel) in plate.annotation.panels.iter_mut().enumerate() {
         panel.contacts = labels[panel_of(k)];
         for keypoint in Keypoint::all() {
-            let absent = Placed { at_px: None, state: KeypointState::Absent, by: PlacedBy::Hand };
+            let absent =
+                Placed { at_px: None, state: KeypointState::Absent, by: PlacedBy::Hand, sd_px: None };
             panel.keypoints.insert(keypoint, absent);
         }
     }

@@ -2,13 +2,12 @@
 
 use std::fmt;
 
-use muybridge_capture::{Estimate, Facing, Manifest, NearOff, PlateCalibration};
+use muybridge_capture::{Estimate, Facing, LEG_SHARE, Manifest, NearOff, PlateCalibration};
 use muybridge_core::{ContactLaw, Gait, LawKind, Limb, Pair};
 
 use super::{Edge, Footfalls, Lane, NoSpan};
 use crate::contacts::{ContactInstant, LegContact};
 use crate::gait_analysis::GaitAnalysis;
-use crate::pipeline::LEG_SHARE;
 
 /// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.80665;
@@ -95,7 +94,7 @@ pub struct LiveGait {
     pub support_s: Option<[f64; 2]>,
     /// Froude number.
     pub froude: Option<f64>,
-    /// Distance from each known law of the titled gait.
+    /// Distance from each known law of the gait.
     pub law_distances: Vec<LawDistance>,
     /// Why numbers are not there.
     pub missing: Vec<Missing>,
@@ -109,7 +108,7 @@ impl LiveGait {
     /// With everything that keeps the four contacts from being known.
     pub fn new(
         footfalls: &Footfalls,
-        manifest: &Manifest,
+        (manifest, gait): (&Manifest, Gait),
         calibration: Option<&PlateCalibration>,
         withers_height_m: Option<f64>,
         laws: &[ContactLaw],
@@ -137,7 +136,7 @@ impl LiveGait {
         };
         match calibrated {
             Some((calibration, [_, closing_sd_s])) => {
-                live.in_seconds(calibration, closing_sd_s, manifest, withers_height_m, laws);
+                live.in_seconds(calibration, closing_sd_s, (manifest, gait), withers_height_m, laws);
             }
             None => live.missing.push(Missing::Calibration),
         }
@@ -148,7 +147,7 @@ impl LiveGait {
         &mut self,
         calibration: &PlateCalibration,
         closing_sd_s: f64,
-        manifest: &Manifest,
+        (manifest, gait): (&Manifest, Gait),
         withers_height_m: Option<f64>,
         laws: &[ContactLaw],
     ) {
@@ -169,7 +168,7 @@ impl LiveGait {
             .or(stated.map(|known| known.value));
         self.froude = height_m.map(|height_m| speed.value.powi(2) / (GRAVITY * LEG_SHARE * height_m));
         self.missing.extend(height_m.is_none().then_some(Missing::WithersHeight));
-        let of_gait = laws.iter().filter(|law| law.gait == manifest.gait);
+        let of_gait = laws.iter().filter(|law| law.gait == gait);
         self.law_distances = of_gait
             .map(|law| LawDistance {
                 kind: law.law,
@@ -181,7 +180,7 @@ impl LiveGait {
                 law_s: law.curve.contact_time_s(speed.value),
             })
             .collect();
-        self.missing.extend(self.law_distances.is_empty().then_some(Missing::Law(manifest.gait)));
+        self.missing.extend(self.law_distances.is_empty().then_some(Missing::Law(gait)));
     }
 }
 

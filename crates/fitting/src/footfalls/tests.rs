@@ -31,7 +31,8 @@ fn clock(plate: &Plate) -> StrideClock {
 fn live(plate: &Plate, calibration: Option<&PlateCalibration>) -> LiveGait {
     let clock = StrideClock::new(&plate.annotation, calibration, None);
     let footfalls = Footfalls::new(&plate.annotation, clock);
-    LiveGait::new(&footfalls, &plate.manifest, calibration, None, &published::laws()).unwrap()
+    LiveGait::new(&footfalls, (&plate.manifest, plate.manifest.gait), calibration, None, &published::laws())
+        .unwrap()
 }
 
 #[test]
@@ -127,11 +128,13 @@ fn what_is_missing_is_named() {
         panel.contacts.set(NearOff::Near, Pair::Hind, StanceLabel::Stance);
     }
     let footfalls = Footfalls::new(&plate.annotation, clock(&plate));
-    let missing = LiveGait::new(&footfalls, &plate.manifest, None, None, &[]).unwrap_err();
+    let missing =
+        LiveGait::new(&footfalls, (&plate.manifest, plate.manifest.gait), None, None, &[]).unwrap_err();
     let words: Vec<String> = missing.iter().map(ToString::to_string).collect();
     assert_eq!(words, ["off fore has no stance span yet", "near hind has no swing yet"]);
     plate.manifest.facing = None;
-    let missing = LiveGait::new(&footfalls, &plate.manifest, None, None, &[]).unwrap_err();
+    let missing =
+        LiveGait::new(&footfalls, (&plate.manifest, plate.manifest.gait), None, None, &[]).unwrap_err();
     assert!(missing.contains(&Missing::Facing));
 }
 
@@ -284,7 +287,8 @@ fn a_frame_of_dragging_takes_no_time() {
         let leg = (NearOff::Off, Pair::Hind);
         let dragged = with_edge(&plate.annotation, &clock, leg, Event::Strike, [4.1, to]);
         let footfalls = Footfalls::new(&dragged, clock.clone());
-        LiveGait::new(&footfalls, &plate.manifest, Some(&calibration), None, &laws).unwrap();
+        LiveGait::new(&footfalls, (&plate.manifest, plate.manifest.gait), Some(&calibration), None, &laws)
+            .unwrap();
     }
     let each_s = start.elapsed().as_secs_f64() / 200.0;
     // The budget is 0.2 ms; ten times that leaves room for a busy machine.

@@ -195,5 +195,5 @@ fn between(
     };
     let state = states[0].or(states[1]).map_or(guessed, |placed| placed.state);
     let finite = at_px.iter().all(|value| value.is_finite());
-    finite.then_some(Placed { at_px: Some(at_px), state, by: PlacedBy::Interpolated })
+    finite.then_some(Placed { at_px: Some(at_px), state, by: PlacedBy::Interpolated, sd_px: None })
 }

@@ -6,8 +6,8 @@ use muybridge_core::{ContactLaw, Gait, LawKind, MPS_PER_MPH, PowerLaw, Provenanc
 
 use super::page::{escape, number, table};
 use super::plot::{Anchor, Axis, Drawn, Frame, HALF_WIDTH_PX, Ink, Mark, Pen, svg, tick_label};
+use crate::gait_laws::GaitLaw;
 use crate::law::ContactPoint;
-use crate::motion_database::GaitLaw;
 use crate::published;
 
 /// Samples of a drawn curve.

@@ -3,6 +3,8 @@
 //! The page loads nothing: the style sheet and the plots (SVG) are in it, and it needs no script. It follows
 //! the reader's choice of light or dark, and prints. Equal fits give equal bytes.
 
+pub mod captures;
+mod contact_sheet;
 mod footfalls;
 mod hoof_paths;
 mod laws;
@@ -10,26 +12,36 @@ mod lengths;
 mod page;
 mod plate;
 mod plot;
+mod posture;
 mod reading;
 mod residuals;
 mod strip;
 mod summary;
+mod supports;
 #[cfg(test)]
 mod tests;
 
 use muybridge_capture::{Keypoint, NearOff};
-use muybridge_core::Skeleton;
+use muybridge_core::{Database, Skeleton};
 
-use crate::motion_database::GaitLaw;
+use crate::gait_laws::GaitLaw;
 use crate::pipeline::PlateFit;
 use plot::Ink;
 
 /// The report on a set of fitted plates and the laws made of them, as a self-contained HTML page.
 ///
-/// `failures` are the causes why other plates were not fitted, in words, one for each. `skeleton` is the
-/// reference the plates were fitted with.
-pub fn html(fits: &[PlateFit], laws: &[GaitLaw], failures: &[String], skeleton: &Skeleton) -> String {
+/// `database` is what was made of the plates; its strides stand beside them on the contact sheets. `failures` are the
+/// causes why other plates were not fitted, in words, one for each. `skeleton` is the reference the plates were fitted
+/// with.
+pub fn html(
+    fits: &[PlateFit],
+    laws: &[GaitLaw],
+    database: &Database,
+    failures: &[String],
+    skeleton: &Skeleton,
+) -> String {
     let mut body = summary::summary(fits, failures);
+    body.push_str(&contact_sheet::sheets(fits, database, skeleton));
     for (index, fit) in fits.iter().enumerate() {
         body.push_str(&plate::section(index, fit, skeleton));
     }

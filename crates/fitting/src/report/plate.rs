@@ -95,6 +95,7 @@ fn time_name(source: TimeSource) -> &'static str {
         TimeSource::Interval => "the interval between panels",
         TimeSource::Speed => "the speed",
         TimeSource::StrideTime => "the stride time",
+        TimeSource::DynamicSimilarity => "dynamic similarity (speed inferred from the stride's length)",
     }
 }
 
@@ -124,6 +125,9 @@ fn known_table(fit: &PlateFit) -> String {
     add("withers height, m", scale.withers_height_m.as_ref(), !by_length);
     if let Position::CameraSpacing { spacing_m, .. } = &calibration.position {
         add("distance of cameras, m", Some(spacing_m), true);
+    }
+    if let Position::EvenAdvance { per_panel_m } = &calibration.position {
+        add("advance of the trunk per panel, m", per_panel_m.as_ref(), true);
     }
     add("interval, s", time.interval_s.as_ref(), time.driven_by == TimeSource::Interval);
     add("speed, m/s", time.speed_m_s.as_ref(), time.driven_by == TimeSource::Speed);

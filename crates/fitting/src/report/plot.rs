@@ -29,7 +29,8 @@ pub(super) const HALF_WIDTH_PX: f64 = 530.0;
 /// What drawing returns.
 pub(super) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// A colour by its role. Near and off, and the three laws, differ in lightness as well as in hue.
+/// A colour by its role. Near and off, and the three laws, differ in lightness as well as in hue; on a contact sheet
+/// the near limbs stand out as the darker (on dark paper the brighter) ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ink {
     Paper,
@@ -39,6 +40,8 @@ pub(super) enum Ink {
     Rule,
     Near,
     Off,
+    NearDark,
+    OffLight,
     Ground,
     Flight,
     Support,
@@ -47,7 +50,7 @@ pub(super) enum Ink {
 }
 
 impl Ink {
-    pub(super) const ALL: [Self; 12] = [
+    pub(super) const ALL: [Self; 14] = [
         Self::Paper,
         Self::Text,
         Self::Body,
@@ -55,6 +58,8 @@ impl Ink {
         Self::Rule,
         Self::Near,
         Self::Off,
+        Self::NearDark,
+        Self::OffLight,
         Self::Ground,
         Self::Flight,
         Self::Support,
@@ -72,6 +77,8 @@ impl Ink {
             Self::Rule => "rule",
             Self::Near => "near",
             Self::Off => "off",
+            Self::NearDark => "near-dark",
+            Self::OffLight => "off-light",
             Self::Ground => "ground",
             Self::Flight => "flight",
             Self::Support => "support",
@@ -90,6 +97,8 @@ impl Ink {
             Self::Rule => [0xDD, 0xD8, 0xCE],
             Self::Near => [0xC8, 0x4E, 0x16],
             Self::Off => [0x1C, 0x6C, 0xB0],
+            Self::NearDark => [0x8F, 0x35, 0x08],
+            Self::OffLight => [0x5A, 0x98, 0xD0],
             Self::Ground => [0x8A, 0x7B, 0x62],
             Self::Flight => [0xEF, 0xE3, 0xC4],
             Self::Support => [0x14, 0x77, 0x55],
@@ -108,6 +117,8 @@ impl Ink {
             Self::Rule => [0x3A, 0x3D, 0x42],
             Self::Near => [0xF7, 0x9A, 0x5C],
             Self::Off => [0x66, 0xB0, 0xF2],
+            Self::NearDark => [0xFF, 0xBA, 0x8C],
+            Self::OffLight => [0x41, 0x7C, 0xB4],
             Self::Ground => [0x9C, 0x8F, 0x78],
             Self::Flight => [0x3D, 0x37, 0x24],
             Self::Support => [0x58, 0xCB, 0x9D],

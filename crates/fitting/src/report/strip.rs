@@ -76,11 +76,7 @@ fn stills(fit: &PlateFit) -> Vec<Still<'_>> {
     slots.sort_by_key(|(slot, _)| stride.problem.order[*slot]);
     let still = |(slot, kinematics): (usize, Kinematics)| {
         let panel = &stride.observation.panels[stride.problem.order[slot]];
-        let down = Limb::ALL.map(|limb| match panel.contacts[limb.index()] {
-            StanceLabel::Stance => true,
-            StanceLabel::Swing => false,
-            StanceLabel::Unknown => fit.analysis.contacts[limb.index()].contains(stride.problem.phases[slot]),
-        });
+        let down = feet_down(fit, slot);
         let mut still = Still { fit: stride, panel, kinematics, down, span_m: [0.0; 2], top_m: 0.0 };
         let places = still.all_places();
         let extreme = |axis: usize, start: f64, pick: fn(f64, f64) -> f64| {
@@ -91,6 +87,17 @@ fn stills(fit: &PlateFit) -> Vec<Still<'_>> {
         still
     };
     slots.into_iter().map(still).collect()
+}
+
+/// Feet down in a slot's panel, in the order of [`Limb::ALL`]: as labelled, else as the analysis has it.
+pub(super) fn feet_down(fit: &PlateFit, slot: usize) -> [bool; 4] {
+    let problem = &fit.fit.problem;
+    let labels = &fit.fit.observation.panels[problem.order[slot]].contacts;
+    Limb::ALL.map(|limb| match labels[limb.index()] {
+        StanceLabel::Stance => true,
+        StanceLabel::Swing => false,
+        StanceLabel::Unknown => fit.analysis.contacts[limb.index()].contains(problem.phases[slot]),
+    })
 }
 
 impl Still<'_> {

@@ -24,7 +24,8 @@ pub(super) fn summary(fits: &[PlateFit], failures: &[String]) -> String {
         "<header><h1>Horses in motion, fitted</h1>\n<p class=\"lede\">{} to a planar skeleton of 28 \
          bones, all panels of a stride at once. Each number says how sure it is; each plot says what it \
          rests on.</p>\n\
-         <nav class=\"contents\">{links}<a href=\"#laws\">laws of speed</a><a href=\"#reading\">how to \
+         <nav class=\"contents\"><a href=\"#sheets\">contact sheets</a>{links}\
+         <a href=\"#laws\">laws of speed</a><a href=\"#reading\">how to \
          read this</a></nav>\n\
          {failed}{results}</header>\n",
         counts(fits.len(), failures.len())
@@ -93,8 +94,11 @@ fn row(index: usize, fit: &PlateFit) -> Vec<String> {
 
 fn footfalls(fit: &PlateFit) -> String {
     let implied = fit.analysis.implied;
-    let verdict =
-        if implied.agrees_with(fit.gait()) { "as titled".into() } else { format!("titled {}", fit.gait()) };
+    let verdict = if implied.agrees_with(fit.titled()) {
+        "as titled".into()
+    } else {
+        format!("titled {}", fit.titled())
+    };
     let class = if implied.agrees_with(fit.gait()) { "unit" } else { "warning" };
     let lead = fit.analysis.lead.map_or("no lead".to_string(), lead_name);
     format!(
@@ -103,7 +107,8 @@ fn footfalls(fit: &PlateFit) -> String {
     )
 }
 
-fn lead_name(lead: Lead) -> String {
+/// A lead in words.
+pub(super) fn lead_name(lead: Lead) -> String {
     let name = |side: Side| if side == Side::Left { "left" } else { "right" };
     if lead.is_transverse() {
         format!("{} lead", name(lead.fore))

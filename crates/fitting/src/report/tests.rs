@@ -3,15 +3,16 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use muybridge_core::{Gait, Skeleton};
+use muybridge_core::{Database, Gait, Skeleton};
 
 use super::html;
-use crate::motion_database::gait_laws;
+use crate::gait_laws::{Evidence, gait_laws};
+use crate::motion_database::build_database;
 use crate::pipeline::{PlateFit, fit_plate};
 use crate::weights::Weights;
 
 /// A plate whose title would break a page that does not escape it. Fitted once for all tests.
-fn plate() -> &'static PlateFit {
+pub(super) fn plate() -> &'static PlateFit {
     static PLATE: OnceLock<PlateFit> = OnceLock::new();
     PLATE.get_or_init(|| {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../annotations/sallie-gardner-1878.json");
@@ -22,11 +23,20 @@ fn plate() -> &'static PlateFit {
     })
 }
 
+/// The database of that plate.
+pub(super) fn database() -> Database {
+    static DATABASE: OnceLock<Database> = OnceLock::new();
+    let fits = std::slice::from_ref(plate());
+    let build = || build_database(&Evidence { fits, ..Evidence::default() }, &Skeleton::reference());
+    DATABASE.get_or_init(build).clone()
+}
+
 fn page() -> String {
     let fits = std::slice::from_ref(plate());
     html(
         fits,
-        &gait_laws(fits),
+        &gait_laws(&Evidence { fits, ..Evidence::default() }),
+        &database(),
         &["bad-plate.json: panel 3: <marks> & ground".into()],
         &Skeleton::reference(),
     )
@@ -65,8 +75,10 @@ fn check_well_formed(page: &str) {
 #[test]
 fn page_is_well_formed_with_and_without_plates() {
     check_well_formed(&page());
-    check_well_formed(&html(&[], &gait_laws(&[]), &["nothing < fitted".into()], &Skeleton::reference()));
-    check_well_formed(&html(&[], &[], &[], &Skeleton::reference()));
+    let (nothing, skeleton) = (Evidence::default(), Skeleton::reference());
+    let (laws, empty) = (gait_laws(&nothing), build_database(&nothing, &skeleton));
+    check_well_formed(&html(&[], &laws, &empty, &["nothing < fitted".into()], &skeleton));
+    check_well_formed(&html(&[], &[], &empty, &[], &skeleton));
 }
 
 #[test]

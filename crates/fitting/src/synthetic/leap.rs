@@ -52,6 +52,12 @@ pub(super) struct Leap {
 
 impl Leap {
     pub(super) fn new(horse: &Skeleton, side: Side, size: f64, random: &mut Random) -> Self {
+        let neck_deg = random.between(-5.0, 5.0);
+        Self::of_habit(horse, side, size, neck_deg, random.between(0.98, 1.02))
+    }
+
+    /// As the plan has it: the neck carried this much higher, the legs folded this much more strongly.
+    pub(super) fn of_habit(horse: &Skeleton, side: Side, size: f64, neck_deg: f64, strength: f64) -> Self {
         let chain = Chain::new(horse);
         let mass = horse.bones.iter().map(|bone| f64::from(bone.mass_fraction)).collect();
         let mut leap = Self {
@@ -62,8 +68,8 @@ impl Leap {
             side,
             size,
             pace: size.sqrt(),
-            neck_deg: random.between(-5.0, 5.0),
-            strength: random.between(0.98, 1.02),
+            neck_deg,
+            strength,
             standing_m: 0.0,
             root_from_mass: Samples::new(SAMPLES_FROM_S, SAMPLES_TO_S, SAMPLE_S, size.sqrt()),
             stances: Default::default(),
@@ -89,6 +95,11 @@ impl Leap {
         self.size
     }
 
+    /// Times against those of the reference horse.
+    pub(super) fn pace(&self) -> f64 {
+        self.pace
+    }
+
     pub(super) fn speed_m_s(&self) -> f64 {
         SPEED_M_S * self.pace
     }
@@ -102,7 +113,7 @@ impl Leap {
     }
 
     /// Where the centre of mass goes, m.
-    fn path(&self, time_s: f64) -> Vec2 {
+    pub(super) fn path(&self, time_s: f64) -> Vec2 {
         let height_m = self.size * COM_HEIGHT.at(time_s / self.pace);
         [self.speed_m_s() * time_s, self.standing_m + height_m]
     }
@@ -147,7 +158,7 @@ impl Leap {
     }
 
     /// The leg of the plan, which leads on the right, that a leg takes the part of.
-    fn part(&self, limb: Limb) -> Limb {
+    pub(super) fn part(&self, limb: Limb) -> Limb {
         match self.side {
             Side::Right => limb,
             Side::Left => Limb::new(limb.pair(), limb.side().opposite()),

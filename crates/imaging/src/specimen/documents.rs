@@ -105,6 +105,7 @@ impl SpecimenTruth {
             annotator: "the truth of a drawn specimen".to_string(),
             visible_sd_px: PLACED_SD_PX,
             occluded_sd_px: PLACED_SD_PX,
+            gait: None,
             stride: StrideSpan {
                 first: 1,
                 last: self.panels.len() as u32,

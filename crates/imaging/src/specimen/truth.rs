@@ -143,7 +143,7 @@ pub(super) fn panel_truth(
         let hidden = photograph.hides(part(keypoint), exact);
         let state = if hidden { KeypointState::Occluded } else { KeypointState::Visible };
         let at_px = Some(hundredths(exact));
-        keypoints.insert(keypoint, Placed { at_px, state, by: PlacedBy::Fitted });
+        keypoints.insert(keypoint, Placed { at_px, state, by: PlacedBy::Fitted, sd_px: None });
     }
     let line = |ends: [Point; 2]| ends.map(hundredths);
     let uprights = scene.uprights().into_iter();

@@ -41,7 +41,7 @@ pub fn propose(
         };
         let was = latest.points.get(keypoint)?.state;
         let state = state(keypoint, at_px, was, &tracked, latest);
-        let placed = Placed { at_px: Some(at_px), state, by: PlacedBy::Tracked };
+        let placed = Placed { at_px: Some(at_px), state, by: PlacedBy::Tracked, sd_px: None };
         Some(Proposal { keypoint, placed, quality })
     };
     Keypoint::all().filter_map(proposed).collect()

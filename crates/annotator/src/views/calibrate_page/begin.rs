@@ -49,6 +49,10 @@ pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_
                 (Some(TimeSource::Interval), "The interval between panels is known"),
                 (Some(TimeSource::Speed), "The animal's speed is known"),
                 (Some(TimeSource::StrideTime), "The time of one stride is known"),
+                (
+                    Some(TimeSource::DynamicSimilarity),
+                    "Nothing is known: infer the speed from the stride's length",
+                ),
                 (None, "Nothing is known: assume an interval"),
             ],
         );

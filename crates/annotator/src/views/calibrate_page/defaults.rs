@@ -18,6 +18,7 @@ pub(super) fn known(quantity: Quantity) -> Known {
         Quantity::WithersHeight => assumed(1.6, 0.1, "a usual height of a horse"),
         Quantity::ScaleRatio => assumed(1.1, 0.05, "a wall as far behind the track as Stanford's"),
         Quantity::CameraSpacing => assumed(0.6858, 0.02, "27 inches, as on Stanford's track in 1878"),
+        Quantity::Advance => assumed(0.2, 0.1, "nobody has typed the advance yet"),
         Quantity::Interval => assumed(0.04, 0.01, "1/25 s, as on Stanford's track in 1878"),
         Quantity::Speed => assumed(4.0, 1.0, "nobody has typed the speed yet"),
         Quantity::StrideTime => assumed(0.6, 0.15, "a usual stride of a horse"),
@@ -90,6 +91,7 @@ pub(super) fn give_time(calibration: &mut Calibration, source: TimeSource) {
         TimeSource::Interval => (&mut time.interval_s, Quantity::Interval),
         TimeSource::Speed => (&mut time.speed_m_s, Quantity::Speed),
         TimeSource::StrideTime => (&mut time.stride_time_s, Quantity::StrideTime),
+        TimeSource::DynamicSimilarity => return,
     };
     place.get_or_insert_with(|| known(quantity));
 }

@@ -17,13 +17,15 @@ pub(super) enum Cameras {
     Fixed,
     Spaced,
     FixedMark,
+    Even,
 }
 
 impl Cameras {
-    pub(super) const NAMES: [(Self, &'static str); 3] = [
+    pub(super) const NAMES: [(Self, &'static str); 4] = [
         (Self::Fixed, "One camera that does not move"),
         (Self::Spaced, "A row of cameras, evenly spaced"),
         (Self::FixedMark, "A row: seen on one fixed mark"),
+        (Self::Even, "Cut out around the animal: it moves on evenly"),
     ];
 
     fn of(position: &Position) -> Self {
@@ -31,6 +33,7 @@ impl Cameras {
             Position::FixedCamera => Self::Fixed,
             Position::CameraSpacing { .. } => Self::Spaced,
             Position::FixedMark { .. } => Self::FixedMark,
+            Position::EvenAdvance { .. } => Self::Even,
         }
     }
 
@@ -43,6 +46,7 @@ impl Cameras {
                 let marks = draft.panel(first).and_then(|panel| panel.marks.first());
                 Position::FixedMark { mark: marks.map_or(0.0, |mark| mark.mark) }
             }
+            Self::Even => Position::EvenAdvance { per_panel_m: None },
         }
     }
 }
@@ -82,6 +86,23 @@ pub(super) fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_
             entry::refused(ui, session, &[Number::FixedMark]);
             remark(ui, "Positions are measured from this mark, which must be placed in every panel.");
         }
+        Cameras::Even => even(ui, session, page),
+    }
+}
+
+/// How far the trunk moves from panel to panel: measured, or typed.
+fn even(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
+    let set = |ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>, name, per_panel_m| {
+        if ui.button(name).clicked() {
+            change(session, page, name, |c| c.position = Position::EvenAdvance { per_panel_m });
+        }
+    };
+    if calibration(session).is_some_and(|c| Quantity::Advance.of(c).is_some()) {
+        known(ui, session, page, Quantity::Advance);
+        set(ui, session, page, "Measure the advance from stance", None);
+    } else {
+        remark(ui, "The advance per panel is measured on the hooves in stance, which the trunk passes over.");
+        set(ui, session, page, "Type the advance instead", Some(defaults::known(Quantity::Advance)));
     }
 }
 

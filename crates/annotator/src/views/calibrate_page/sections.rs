@@ -210,11 +210,20 @@ fn time(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
         (TimeSource::Speed, "the speed", Quantity::Speed),
         (TimeSource::StrideTime, "the stride time", Quantity::StrideTime),
     ];
-    let choices = sources.map(|(source, title, _)| (source, title, None));
+    let similarity = (TimeSource::DynamicSimilarity, "dynamic similarity", None);
+    let [a, b, c] = sources.map(|(source, title, _)| (source, title, None));
+    let choices = [a, b, c, similarity];
     let why = "What the fit uses; the others are compared with it";
     let chosen = row(ui, "Driven by", why, |ui| choose(ui, "Time driven by", now, &choices, LIST));
     if let Some(source) = chosen {
         change(session, page, "Source of time", |c| defaults::give_time(c, source));
+    }
+    if now == TimeSource::DynamicSimilarity {
+        remark(
+            ui,
+            "The speed at which horses have a stride of this length, by the published relation of Froude number and \
+             relative stride length. Needs to know after how many panels the stride closes. All that rests on it is inferred.",
+        );
     }
     for (source, title, quantity) in sources {
         if calibration(session).is_some_and(|c| quantity.of(c).is_some()) {
@@ -224,6 +233,7 @@ fn time(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
                     TimeSource::Interval => c.time.interval_s = None,
                     TimeSource::Speed => c.time.speed_m_s = None,
                     TimeSource::StrideTime => c.time.stride_time_s = None,
+                    TimeSource::DynamicSimilarity => {}
                 });
             }
         } else if ui.button(format!("Add {title}")).clicked() {

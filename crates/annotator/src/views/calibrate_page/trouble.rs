@@ -36,6 +36,15 @@ pub(super) fn words(draft: &Draft) -> Option<[String; 2]> {
                 .into(),
             "Place hooves and label them, or give the distances or the ratio of the wall.".into(),
         ],
+        CalibrationError::NoAdvance => [
+            "No hoof is labelled stance in two neighbouring panels, so the advance cannot be measured."
+                .into(),
+            "Place hooves and label them, or type the advance.".into(),
+        ],
+        CalibrationError::NoSimilarity(reason) => [
+            format!("The speed cannot be inferred: {reason}."),
+            "Say it, or choose another source of time.".into(),
+        ],
         CalibrationError::Contradiction(_) if panels_with_trunk(draft) < 2 => [
             "How far the animal goes is not known: its trunk is placed in fewer than two panels.".into(),
             "Place withers, back, croup or dock on the Pose page; scale and ground can be drawn before."

@@ -27,7 +27,7 @@ struct Measured {
 
 /// Curves, points, and how far apart they are.
 pub(super) fn show(ui: &mut Ui, session: &Session, fit: Option<&PlateFit>) {
-    let gait = session.draft().manifest.gait;
+    let gait = session.draft().annotation.gait(&session.draft().manifest);
     let laws: Vec<&ContactLaw> = session.derived.laws().iter().filter(|law| law.gait == gait).collect();
     let now = session.derived.gait.as_ref().map(of_footfalls).unwrap_or_default();
     let fitted = fit.map(of_fit).unwrap_or_default();

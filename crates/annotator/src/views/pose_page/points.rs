@@ -14,7 +14,7 @@ pub(super) fn place(
     at_px: [f64; 2],
     state: KeypointState,
 ) {
-    let placed = Placed { at_px: Some(at_px), state, by: PlacedBy::Hand };
+    let placed = Placed { at_px: Some(at_px), state, by: PlacedBy::Hand, sd_px: None };
     draft.panel_mut(panel).keypoints.insert(keypoint, placed);
 }
 
@@ -40,11 +40,11 @@ pub(super) fn follow_skeleton(
                 // The handle is where the skeleton's joint is; others keep their distance from theirs.
                 let at = placed.at_px.filter(|_| handle != Some(keypoint)).unwrap_or(a);
                 let by = if handle == Some(keypoint) { PlacedBy::Hand } else { PlacedBy::Fitted };
-                Placed { at_px: Some([at[0] + moved[0], at[1] + moved[1]]), by, ..placed }
+                Placed { at_px: Some([at[0] + moved[0], at[1] + moved[1]]), by, sd_px: None, ..placed }
             }
             None => {
                 let by = if handle == Some(keypoint) { PlacedBy::Hand } else { PlacedBy::Fitted };
-                Placed { at_px: Some(b), state: expected_state(keypoint), by }
+                Placed { at_px: Some(b), state: expected_state(keypoint), by, sd_px: None }
             }
         };
         if placed.at_px.iter().flatten().all(|v| v.is_finite()) {

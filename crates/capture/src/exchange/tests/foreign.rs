@@ -166,7 +166,7 @@ fn frames_of_a_plate_of_single_files_keep_their_own_names() {
 fn what_a_person_placed_stays_unless_it_is_to_be_replaced() {
     let import =
         imported("p.csv", "panel,keypoint,x_px,y_px\n1,dock,30,40\n1,poll,31,41\n3,back,530,40\n").unwrap();
-    let placed = |by| Placed { at_px: Some([50.0, 50.0]), state: KeypointState::Visible, by };
+    let placed = |by| Placed { at_px: Some([50.0, 50.0]), state: KeypointState::Visible, by, sd_px: None };
     let (poll, dock) = (Keypoint::from_name("poll").unwrap(), Keypoint::from_name("dock").unwrap());
     let mut there = annotation();
     there.panels = vec![PanelAnnotation::empty(1), PanelAnnotation::empty(6)];
@@ -206,13 +206,23 @@ fn a_point_that_was_moved_in_labelme_was_placed_by_hand() {
     let mut known = annotation();
     let mut keypoints = Keypoints::default();
     for (name, x) in [("dock", 40.0), ("poll", 50.0)] {
-        let placed = Placed { at_px: Some([x, 60.0]), state: KeypointState::Occluded, by: PlacedBy::Fitted };
+        let placed = Placed {
+            at_px: Some([x, 60.0]),
+            state: KeypointState::Occluded,
+            by: PlacedBy::Fitted,
+            sd_px: None,
+        };
         keypoints.insert(Keypoint::from_name(name).unwrap(), placed);
     }
     known.panels.push(PanelAnnotation { keypoints, ..PanelAnnotation::empty(1) });
     let mut moved = known.clone();
     let poll = Keypoint::from_name("poll").unwrap();
-    let placed = Placed { at_px: Some([51.0, 60.0]), state: KeypointState::Occluded, by: PlacedBy::Fitted };
+    let placed = Placed {
+        at_px: Some([51.0, 60.0]),
+        state: KeypointState::Occluded,
+        by: PlacedBy::Fitted,
+        sd_px: None,
+    };
     moved.panels[0].keypoints.insert(poll, placed);
     let files = files(&exported(&moved, Format::Labelme, None));
     let import = import(&files, None, &manifest(), &Cutouts, &BTreeMap::new()).unwrap();

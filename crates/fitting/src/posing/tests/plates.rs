@@ -73,7 +73,12 @@ fn lengths_of_a_plate_come_from_its_points_and_rest_on_the_reference_without_any
             .map(|panel| {
                 let mut keypoints = Keypoints::default();
                 for point in &panel.points {
-                    let placed = Placed { at_px: Some(point.at_px), state: point.state, by: PlacedBy::Hand };
+                    let placed = Placed {
+                        at_px: Some(point.at_px),
+                        state: point.state,
+                        by: PlacedBy::Hand,
+                        sd_px: None,
+                    };
                     keypoints.insert(point.keypoint, placed);
                 }
                 keypoints

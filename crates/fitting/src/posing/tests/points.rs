@@ -51,7 +51,8 @@ fn few_points_move_what_they_are_on_and_odd_ones_do_no_harm() {
 
     let mut points = Keypoints::default();
     let mut place = |at_px: [f64; 2]| {
-        let placed = Placed { at_px: Some(at_px), state: KeypointState::Visible, by: PlacedBy::Hand };
+        let placed =
+            Placed { at_px: Some(at_px), state: KeypointState::Visible, by: PlacedBy::Hand, sd_px: None };
         points.insert(Keypoint::Body(BodyPoint::Withers), placed);
         points.clone()
     };
