@@ -202,9 +202,12 @@ fn points_are_as_repeatable_as_the_annotation_says() {
     for (seen, fit) in each() {
         let path = repository().join(format!("annotations/second-pass/{}.json", seen.id));
         if !path.exists() {
-            let averaged = fit.plate.annotation.panels.iter().any(|panel| {
-                panel.keypoints.iter().any(|(_, placed)| placed.sd_px.is_some())
-            });
+            let averaged = fit
+                .plate
+                .annotation
+                .panels
+                .iter()
+                .any(|panel| panel.keypoints.iter().any(|(_, placed)| placed.sd_px.is_some()));
             assert!(averaged, "{}: neither a second pass nor a spread of its own", seen.id);
             continue;
         }

@@ -136,7 +136,7 @@ mod tests {
             Err(DataError::Schema { found: 99, expected: DATABASE_SCHEMA })
         ));
         let mut database = Database::embedded();
-        database.strides[0].curves.height_m.pop();
+        database.strides[0].bone_lengths_m.pop();
         let text = serde_json::to_string(&database).unwrap();
         assert!(matches!(Database::from_json(&text), Err(DataError::Invalid(_))));
     }

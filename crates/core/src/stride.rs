@@ -9,8 +9,8 @@ use crate::pose::Pose;
 use crate::provenance::Provenance;
 use crate::skeleton::{BONE_COUNT, Skeleton};
 
-/// Samples per periodic curve. A stride's distal joints hold about six harmonics; 48 samples carry them with an
-/// interpolation error below a tenth of a degree.
+/// Samples per periodic curve. A stride's distal joints hold about six harmonics, but a hoof comes to rest within a few
+/// hundredths of a stride: 96 samples keep a standing toe within 2 mm of its print between them, 48 within 6 mm.
 pub const CURVE_SAMPLES: usize = 96;
 /// Curves per stride: root surge, height and pitch, 28 bends, two scapula slides.
 pub const CHANNEL_COUNT: usize = 3 + BONE_COUNT + 2;
@@ -28,6 +28,19 @@ impl Contact {
     /// Share of the stride the hoof is down, 0 to 1.
     pub fn duty_factor(self) -> f32 {
         (self.lift_off_phase - self.strike_phase).rem_euclid(1.0)
+    }
+
+    /// The phase at which another stride's step cycle of this leg is as far as this one is at `phase`: stance to stance and swing to
+    /// swing, linearly.
+    pub fn same_step(self, other: Self, phase: f32) -> f32 {
+        let since = (phase - self.strike_phase).rem_euclid(1.0);
+        let (duty, other_duty) = (self.duty_factor(), other.duty_factor());
+        let other_since = if since < duty {
+            since / duty * other_duty
+        } else {
+            other_duty + (since - duty) / (1.0 - duty) * (1.0 - other_duty)
+        };
+        other.strike_phase + other_since
     }
 
     /// Whether the hoof is down at a phase (any real number).

@@ -113,7 +113,7 @@ impl Timing {
 fn warp_leg(stride: &mut Stride, captured: &Stride, limb: Limb) {
     let (new, old) = (stride.contacts[limb.index()], captured.contacts[limb.index()]);
     for k in 0..CURVE_SAMPLES {
-        let pose = captured.pose(same_step(sample_phase(k), new, old) as f32);
+        let pose = captured.pose(new.same_step(old, sample_phase(k) as f32));
         for bone in limb.first_bone()..=limb.hoof_bone() {
             stride.curves.bends_rad[bone][k] = pose.bends_rad[bone];
         }
@@ -149,7 +149,7 @@ impl ToePath {
         let duty = f64::from(contact.duty_factor());
         let stride_length_m = f64::from(new.stride_length_m());
         let old_toe = |phase: f64| {
-            let joints = captured.pose(same_step(phase, contact, old) as f32).joints(skeleton);
+            let joints = captured.pose(contact.same_step(old, phase as f32)).joints(skeleton);
             let (toe, root) = (joints.toe(limb), joints.bases[limb.first_bone()]);
             [f64::from(toe.x - root.x), f64::from(toe.y)]
         };
@@ -235,7 +235,7 @@ fn cleared(height_m: f64, share: f64) -> f64 {
 }
 
 /// From 0 to 1 without a slope at either end.
-pub(crate) fn smooth(t: f64) -> f64 {
+fn smooth(t: f64) -> f64 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
@@ -244,18 +244,6 @@ pub(crate) fn smooth(t: f64) -> f64 {
 fn ease(share: f64) -> f64 {
     let rest = 1.0 - (share / EASING).clamp(0.0, 1.0);
     share * rest * rest
-}
-
-/// The phase of the old stride at the same point of a leg's step cycle: stance to stance, swing to swing, linearly.
-pub(crate) fn same_step(phase: f64, new: Contact, old: Contact) -> f64 {
-    let since = (phase - f64::from(new.strike_phase)).rem_euclid(1.0);
-    let (new_duty, old_duty) = (f64::from(new.duty_factor()), f64::from(old.duty_factor()));
-    let old_since = if since < new_duty {
-        since / new_duty * old_duty
-    } else {
-        old_duty + (since - new_duty) / (1.0 - new_duty) * (1.0 - old_duty)
-    };
-    f64::from(old.strike_phase) + old_since
 }
 
 /// Solves a leg's five joints for every sample of its path; returns what the worst of those at or near the ground lacks, m.

@@ -53,7 +53,8 @@ pub(crate) fn reach_from(
     let leg = Leg::new(pose, skeleton, limb);
     let limits: [[f64; 2]; 5] =
         std::array::from_fn(|joint| skeleton.bones[limb.first_bone() + joint].limits_rad.map(f64::from));
-    let mut bends: LegBends = std::array::from_fn(|joint| start[joint].clamp(limits[joint][0], limits[joint][1]));
+    let mut bends: LegBends =
+        std::array::from_fn(|joint| start[joint].clamp(limits[joint][0], limits[joint][1]));
     let mut best = (bends, f64::INFINITY);
     for _ in 0..STEPS {
         let places = leg.joints(&bends);

@@ -37,9 +37,10 @@ fn identifier(text: &str) -> Result<String, String> {
 }
 
 fn gait(text: &str) -> Result<Gait, String> {
-    let names = || Gait::ALL.map(Gait::name).join(", ");
+    let strides = |gait: &Gait| *gait != Gait::Leap;
+    let names = || Gait::ALL.into_iter().filter(strides).map(Gait::name).collect::<Vec<_>>().join(", ");
     Gait::from_name(text)
-        .filter(|gait| *gait != Gait::Leap)
+        .filter(strides)
         .ok_or_else(|| format!("no gait of strides; the names are {}", names()))
 }
 
@@ -81,10 +82,10 @@ fn told(mean: &MeanStride) -> String {
         mean.advance
     );
     text += &format!("spread between strides: median {median:.2} %, worst {worst:.2} % of withers height\n");
+    text += &format!("{} places dropped, {} moved to the other leg\n", mean.jumps, mean.swaps);
     text += &format!(
-        "{} places dropped, {} moved to the other leg; off soles {:.1} % of withers height above near ones\n",
-        mean.jumps,
-        mean.swaps,
+        "near legs overtake off legs by {:.1} % of withers height a stride, off soles appear {:.1} % higher\n",
+        100.0 * mean.parallax().unwrap_or(f64::NAN),
         100.0 * mean.off_rise()
     );
     for hoof in &mean.hooves {

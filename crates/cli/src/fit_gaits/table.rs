@@ -1,7 +1,7 @@
 //! The table for people.
 
 use comfy_table::{Table, presets::UTF8_FULL};
-use muybridge_core::{MPS_PER_MPH, Pair};
+use muybridge_core::{MPS_PER_MPH, Pair, Provenance, SpeedSource};
 use muybridge_fitting::gait_laws::GaitLaw;
 use muybridge_fitting::held_out::quantile;
 use muybridge_fitting::pipeline::PlateFit;
@@ -34,7 +34,7 @@ pub(super) fn text(outcome: &Outcome) -> String {
         table.add_row(plate_row(fitted, &laws));
     }
     for law in outcome.laws.iter().filter(|law| !outcome.fits.iter().any(|f| f.gait() == law.law.gait)) {
-        table.add_row(published_row(law));
+        table.add_row(law_row(law));
     }
     let mut text = format!("{table}\n");
     for fitted in &outcome.fits {
@@ -42,7 +42,9 @@ pub(super) fn text(outcome: &Outcome) -> String {
     }
     text.push_str(&compare::text(&outcome.fits, &outcome.database));
     text.push_str(
-        "A law by one or two points has no interval; an error of 1 % in each T_c moves b by 0.03 to 0.08.\n\
+        "Speeds marked inferred follow from the stride's length by dynamic similarity, and all times of such a plate with them.\n\
+         A borrowed b is not the gait's own: its captures cannot tell it, and a alone is theirs.\n\
+         A law by one or two points has no interval; an error of 1 % in each T_c moves b by 0.03 to 0.08.\n\
          Support is the time in which at least one hoof is down (what the published numbers most likely are);\n\
          limb stance is a single limb's. They differ by a factor of up to four at the gallop.\n",
     );
@@ -75,7 +77,12 @@ fn plate_row(fitted: &PlateFit, laws: &[&GaitLaw]) -> Vec<String> {
     vec![
         fitted.gait().to_string(),
         fitted.id().to_string(),
-        format!("{}\n({:.1})", pm([speed.value, speed.sd], 2), speed.value / MPS_PER_MPH),
+        format!(
+            "{}\n({:.1}){}",
+            pm([speed.value, speed.sd], 2),
+            speed.value / MPS_PER_MPH,
+            if fitted.calibration.speed_source == SpeedSource::Inferred { "\ninferred" } else { "" }
+        ),
         pm(analysis.stride_time_s, 3),
         format!("{}\n{}", pm(analysis.stance_s(Pair::Fore), 3), pm(analysis.stance_s(Pair::Hind), 3)),
         pm(analysis.support_s(), 3),
@@ -96,15 +103,22 @@ fn lines(laws: &[&GaitLaw], cell: impl Fn(&GaitLaw) -> String) -> String {
 fn interval(law: &GaitLaw) -> String {
     match &law.law.interval {
         Some(i) => format!("a {:.3}..{:.3}, b {:.3}..{:.3} ({})", i.a[0], i.a[1], i.b[0], i.b[1], law.law.n),
+        None if law.law.borrowed.is_some() => format!("none ({}, b borrowed)", law.law.n),
         None => format!("none ({}, {})", law.law.n, law.law.provenance.kind()),
     }
 }
 
-fn published_row(law: &GaitLaw) -> Vec<String> {
+/// A law without a plate of its gait.
+fn law_row(law: &GaitLaw) -> Vec<String> {
     let speeds: Vec<String> =
         law.points.iter().map(|p| format!("{:.2} ({:.0})", p.speed_m_s, p.speed_m_s / MPS_PER_MPH)).collect();
     let times: Vec<String> = law.points.iter().map(|p| format!("{:.3}", p.contact_time_s)).collect();
-    let mut row = vec![law.law.gait.to_string(), "huang-2012 (published)".into(), speeds.join("\n")];
+    let source = match &law.law.provenance {
+        Provenance::Published { .. } => "huang-2012 (published)".to_string(),
+        Provenance::Derived { from, .. } => format!("derived from\n{}", from.join("\n")),
+        Provenance::Captured { plates, .. } => plates.join("\n"),
+    };
+    let mut row = vec![law.law.gait.to_string(), source, speeds.join("\n")];
     row.extend(["".into(), "".into(), times.join("\n")]);
     row.extend(std::iter::repeat_n(String::new(), 4));
     row.push(law.law.law.name().into());

@@ -27,8 +27,12 @@ const GUESS: f64 = 0.03;
 pub(super) const WIDE_SPREADS: [f64; 2] = [0.04, 0.08];
 /// Standard deviation of an assumed withers height, m: riding horses of one kind.
 const WITHERS_SD_M: f64 = 0.08;
-/// Camera distance that is assumed, m, and its standard deviation: a film that shows two to four strides at once.
-const CAMERA_DISTANCE_M: [f64; 2] = [8.0, 3.0];
+/// Camera distance that is assumed where the parallax of near and off legs does not tell it, m.
+const CAMERA_DISTANCE_M: f64 = 8.0;
+/// Standard deviation of either, as a share: joints are not as far apart as hooves, and a lens is not known.
+const CAMERA_DISTANCE_SD: f64 = 0.35;
+/// Camera distances that are believed, m.
+const CAMERA_DISTANCES_M: [f64; 2] = [3.0, 40.0];
 /// Heights of a camera that are believed, m: between a tripod's lowest and a person's highest.
 const CAMERA_HEIGHTS_M: [f64; 2] = [0.3, 2.0];
 /// Its standard deviation, m.
@@ -131,7 +135,16 @@ fn manifest(clip: &Clip, mean: &MeanStride, plan: &Plan, frame: &Frame) -> Manif
 fn calibration(mean: &MeanStride, plan: &Plan) -> Calibration {
     let assumed =
         |value, sd, from: &str| Known { value: hundredth(value), sd, assumed: true, from: from.into() };
-    let [distance_m, distance_sd_m] = CAMERA_DISTANCE_M;
+    // While the animal passes, its near legs overtake its off legs by their distance over that of the camera.
+    let parallax = mean.parallax().unwrap_or(0.0);
+    let by_parallax = hoof_track_width_m() * mean.advance / parallax;
+    let is_told = (CAMERA_DISTANCES_M[0]..=CAMERA_DISTANCES_M[1]).contains(&by_parallax);
+    let distance_m = if is_told { by_parallax } else { CAMERA_DISTANCE_M };
+    let distance_from = if is_told {
+        "not stated; near legs overtake off legs so far while the animal passes, at the reference horse's distance between them"
+    } else {
+        "not stated; of the order at which a film shows two to four strides"
+    };
     // Off soles are seen this much higher per metre of camera height.
     let rise_per_m = 1.0 - distance_m / (distance_m + hoof_track_width_m());
     let height_m = mean.off_rise() * plan.withers_height_m / rise_per_m;
@@ -155,15 +168,11 @@ fn calibration(mean: &MeanStride, plan: &Plan) -> Calibration {
             stride_time_s: None,
         },
         camera: Camera {
-            distance_m: assumed(
-                distance_m,
-                distance_sd_m,
-                "not stated; of the order at which a film shows two to four strides",
-            ),
+            distance_m: assumed(distance_m, hundredth(CAMERA_DISTANCE_SD * distance_m), distance_from),
             height_m: assumed(
                 height_m,
                 CAMERA_HEIGHT_SD_M,
-                "not stated; at the assumed distance off soles then appear as far above near ones as they do, within what is possible",
+                "not stated; at that distance off soles then appear as far above near ones as they do, within what is possible",
             ),
         },
     }

@@ -93,6 +93,11 @@ impl Periodic {
 
     /// What the drift has added at an instant.
     pub(super) fn drift_at(&self, turns: f64) -> f64 {
-        self.coefficients[1] * (turns - self.middle)
+        self.drift_per_turn() * (turns - self.middle)
+    }
+
+    /// What the drift adds in a stride.
+    pub(super) fn drift_per_turn(&self) -> f64 {
+        self.coefficients[1]
     }
 }

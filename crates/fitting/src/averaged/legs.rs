@@ -83,6 +83,11 @@ impl Habit {
         [self.axes[0].drift_at(turns), self.axes[1].drift_at(turns)]
     }
 
+    /// The slow change of the place forward, a stride.
+    pub(super) fn drift_forward(&self) -> f64 {
+        self.axes[0].drift_per_turn()
+    }
+
     fn distance(&self, seen: Seen) -> f64 {
         let [x, y] = self.at(seen.turns);
         (seen.at[0] - x).hypot(seen.at[1] - y)

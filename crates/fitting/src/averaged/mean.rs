@@ -41,6 +41,9 @@ pub struct MeanPlace {
 pub struct MeanPoint {
     /// The keypoint.
     pub keypoint: Keypoint,
+    /// How far forward of the trunk it drifts in a stride, withers heights; taken out of its places. Points nearer to the
+    /// camera than the trunk drift forward as the animal passes, points behind it drift back.
+    pub drift: f64,
     /// Its place at phases `k / PHASES`.
     pub places: Vec<Option<MeanPlace>>,
 }
@@ -68,7 +71,11 @@ fn mean_point(course: &Course, middle: f64) -> Option<MeanPoint> {
     let mut places: Vec<Option<MeanPlace>> =
         (0..PHASES).map(|k| mean_place(&still, k as f64 / PHASES as f64, &expected)).collect();
     steady_spreads(&mut places);
-    places.iter().any(Option::is_some).then_some(MeanPoint { keypoint: course.keypoint, places })
+    places.iter().any(Option::is_some).then_some(MeanPoint {
+        keypoint: course.keypoint,
+        drift: habit.drift_forward(),
+        places,
+    })
 }
 
 /// Strides from a phase to the nearest instant of that phase, and which stride it is in.

@@ -17,8 +17,8 @@ mod robust;
 mod stance;
 mod strides;
 
-use muybridge_capture::Facing;
-use muybridge_core::Gait;
+use muybridge_capture::{Facing, Keypoint, LimbJoint, NearOff};
+use muybridge_core::{Gait, Pair};
 
 pub use clip::{Clip, TableError, TableFault};
 pub use documents::{Plan, documents};
@@ -112,8 +112,24 @@ impl MeanStride {
         [0.5, 1.0].map(|share| quantile(all.clone(), share).unwrap_or(0.0))
     }
 
-    /// How much higher in the picture off soles stand than near ones, withers heights. A camera over the ground sees them
-    /// higher; where they are lower by more than they scatter, the sides are confused.
+    /// How much farther near legs drift forward in a stride than off legs, withers heights: the parallax of the two sides as
+    /// the animal passes. Negative where the sides are confused; none without any pair of legs.
+    pub fn parallax(&self) -> Option<f64> {
+        let drift = |side, pair, joint| {
+            let keypoint = Keypoint::Limb(side, pair, joint);
+            self.points.iter().find(|point| point.keypoint == keypoint).map(|point| point.drift)
+        };
+        let mut differences = Vec::new();
+        for pair in [Pair::Fore, Pair::Hind] {
+            for joint in [LimbJoint::Middle, LimbJoint::Fetlock, LimbJoint::Hoof] {
+                let [near, off] = [NearOff::Near, NearOff::Off].map(|side| drift(side, pair, joint));
+                differences.extend(near.zip(off).map(|(near, off)| near - off));
+            }
+        }
+        quantile(differences, 0.5)
+    }
+
+    /// How much higher in the picture off soles stand than near ones, withers heights: a camera over the ground sees them so.
     pub fn off_rise(&self) -> f64 {
         let [near_fore, off_fore, near_hind, off_hind] = [0, 1, 2, 3].map(|i| self.hooves[i].level);
         0.5 * (off_fore - near_fore + off_hind - near_hind)

@@ -60,7 +60,8 @@ pub struct Naming {
 /// The tables that can be read.
 pub(super) static NAMINGS: [Naming; 2] = [IN_HAND_TROT, LABELLED_WALK];
 
-/// Points of a trot tracked by `DeepLabCut`: `right` and `left` are the horse's own.
+/// Points of a trot tracked by `DeepLabCut`: `right` and `left` are the horse's own, for as it passes to the right its `right`
+/// legs overtake its `left` ones.
 ///
 /// - `nostril` lies 8 to 10 cm behind the tip of the nose on the line to the poll; poll to nostril measures 0.36 of the
 ///   withers height, as the reference's head does from poll to tip, so it serves as the muzzle.
@@ -105,8 +106,9 @@ const IN_HAND_TROT: Naming = Naming {
 
 /// Points of the Horse-10 and Horse-30 sets, placed by hand.
 ///
-/// - `Near` is the rider's near side, the left, and `Off` the right, not the camera's: this horse moves right, its `Off`
-///   soles are lower in the picture than its `Near` ones by 0.03 of the withers height, and only `Near` points are hidden.
+/// - `Near` is the rider's near side, the left, and `Off` the right, not the camera's. This horse moves right: its `Off` legs
+///   overtake its `Near` ones by 0.05 of the withers height a stride as it passes, as legs nearer to the camera do, and their
+///   soles are lower in the picture by 0.04.
 /// - `Hip` is at the height of the withers and 0.72 of the way from withers to ischium, where the other horse's croup is
 ///   (its point of the hip is at 0.57): it serves as the croup.
 /// - `Eye` stands for the poll, which lies on the line from the nose through the eye: nose to eye measures 0.246 of the withers

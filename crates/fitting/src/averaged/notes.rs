@@ -7,9 +7,6 @@ use super::clip::Clip;
 use super::documents::{BIAS, WIDE_SPREADS};
 use super::mean::{MeanPlace, PHASES};
 
-/// Off soles lower than near ones by more than this mean that the sides may be confused, withers heights.
-const CONFUSED_SIDES: f64 = 0.015;
-
 /// The notes of a mean stride's annotation, in words.
 pub(super) fn notes(clip: &Clip, mean: &MeanStride) -> Vec<String> {
     let percent = |share: f64| 100.0 * share;
@@ -35,10 +32,8 @@ pub(super) fn notes(clip: &Clip, mean: &MeanStride) -> Vec<String> {
         "The frame rate is not stated and nor is any length: speed and times are inferred from the stride's length at an assumed withers height.".into(),
         "Contacts: a hoof stands where it is at its lowest and falls back as the trunk advances; unknown where only one of the two holds.".into(),
     ];
-    if mean.off_rise() < -CONFUSED_SIDES {
-        notes.push(
-            "Off soles stand lower in the picture than near ones: near and off may be exchanged.".into(),
-        );
+    if mean.parallax().is_some_and(|parallax| parallax < 0.0) {
+        notes.push("Off legs overtake near ones as the animal passes: near and off may be exchanged.".into());
     }
     notes.extend(missing(mean));
     notes

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use muybridge_capture::{BodyPoint, Keypoint, LimbJoint, Plate, calibrate};
+use muybridge_capture::{BodyPoint, Facing, Keypoint, LimbJoint, NearOff, Plate, calibrate};
 use muybridge_core::{Gait, Pair, Side};
 
 use super::naming::{Landmark, NAMINGS};
@@ -14,6 +14,8 @@ const ADVANCE: f64 = 1.2;
 const DUTY: f64 = 0.62;
 const PERIOD: f64 = 52.3;
 const FRAMES: usize = 215;
+/// Distance of the legs from the median plane, withers heights; the camera is 10 withers heights away.
+const HALF_WIDTH: f64 = 0.06;
 
 /// How the film was made.
 struct Film {
@@ -76,6 +78,7 @@ impl Noise {
 /// are anywhere, and some hind hooves have each other's names.
 fn table(film: &Film) -> String {
     let points = NAMINGS[1].points;
+    let facing = if film.direction < 0.0 { Facing::Left } else { Facing::Right };
     let mut noise = Noise(5);
     let mut text = String::from("picture");
     for (name, _) in points {
@@ -87,7 +90,6 @@ fn table(film: &Film) -> String {
         let trunk = film.advances * ADVANCE * (turns - 0.5 * FRAMES as f64 / PERIOD);
         let swapped = film.moves && frame % 23 == 11;
         for (_, landmark) in points {
-            // A left-facing animal shows its left side, so that the sides change places in the picture.
             let named = match landmark {
                 Landmark::Own(side, Pair::Hind, LimbJoint::Hoof) if swapped => {
                     Landmark::Own(side.opposite(), Pair::Hind, LimbJoint::Hoof)
@@ -96,7 +98,12 @@ fn table(film: &Film) -> String {
             };
             let at = truth(named, if film.moves { turns } else { 0.0 });
             let forward = trunk + at[0];
-            let px_per_height = 1500.0 / (10.0 - 0.2 * forward);
+            let nearer = match landmark.keypoint(facing) {
+                Keypoint::Limb(NearOff::Near, ..) => HALF_WIDTH,
+                Keypoint::Limb(NearOff::Off, ..) => -HALF_WIDTH,
+                Keypoint::Body(_) => 0.0,
+            };
+            let px_per_height = 1500.0 / (10.0 - 0.2 * forward - nearer);
             let mut scattered = |value: f64| value + film.scatter * noise.next();
             let x = 960.0 + film.direction * px_per_height * scattered(forward);
             let y = 500.0 + px_per_height * (0.6 - scattered(at[1]));
@@ -144,6 +151,11 @@ fn four_strides_with_noise_gaps_swaps_and_a_change_of_size_give_the_true_one() {
         assert!((mean.strides.period_frames - PERIOD).abs() < 0.1, "{:?}", mean.strides);
         assert!((mean.advance - ADVANCE).abs() < 0.02, "{}", mean.advance);
         assert!(mean.sizes[1][1] - mean.sizes[0][1] > 0.08, "the animal grows: {:?}", mean.sizes);
+        let parallax = mean.parallax().unwrap() / (ADVANCE * 2.0 * HALF_WIDTH / 10.0);
+        assert!(
+            (0.7..1.3).contains(&parallax),
+            "near legs overtake off legs: {parallax} of what they should"
+        );
         assert!(mean.swaps >= 8, "{} swaps", mean.swaps);
         let (median, worst) = (errors[errors.len() / 2], errors[errors.len() - 1]);
         assert!(median < 0.006 && worst < 0.02, "median {median}, worst {worst} of withers height");

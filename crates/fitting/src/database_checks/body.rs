@@ -228,4 +228,11 @@ mod tests {
         fast.bone_lengths_m[muybridge_core::bone::HEAD] += 0.01;
         assert_eq!(checks_of_all(&[slow, fast]), [Check::BoneLength]);
     }
+
+    #[test]
+    fn a_bone_of_negative_length_is_found() {
+        let mut stride = Specimen::trot().stride();
+        stride.bone_lengths_m[muybridge_core::bone::HEAD] *= -1.0;
+        assert_eq!(checks_of(&stride), [Check::BoneLength]);
+    }
 }

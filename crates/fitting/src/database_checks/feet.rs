@@ -138,6 +138,8 @@ fn under_ground(subject: &Subject<'_>, limit: f64) -> Option<Deviation> {
 
 #[cfg(test)]
 mod tests {
+    use muybridge_core::{Provenance, SpeedSource};
+
     use super::super::specimen::{Specimen, checks_of};
     use super::*;
 
@@ -158,6 +160,21 @@ mod tests {
         let at = |toe_height_m| Specimen { toe_height_m, ..Specimen::trot() }.stride();
         assert_eq!(checks_of(&at(-0.008)), [Check::ToeSinks]);
         assert_eq!(checks_of(&at(0.008)), [Check::ToeFloats]);
+    }
+
+    #[test]
+    fn a_capture_may_scatter_as_placed_points_do() {
+        let provenance = Provenance::Captured {
+            plates: vec!["a plate".into()],
+            annotations_sha256: vec![String::new()],
+            speed: SpeedSource::Stated,
+        };
+        let at = |toe_height_m| Stride {
+            provenance: provenance.clone(),
+            ..Specimen { toe_height_m, ..Specimen::trot() }.stride()
+        };
+        assert_eq!(checks_of(&at(0.03)), []);
+        assert_eq!(checks_of(&at(0.05)), [Check::ToeFloats]);
     }
 
     #[test]

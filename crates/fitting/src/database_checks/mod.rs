@@ -55,6 +55,8 @@ pub enum Check {
     StrideTime,
     /// Stride length, in metres or against the leg's length.
     StrideLength,
+    /// The speed is one at which a horse of this size uses the gait.
+    GaitSpeed,
     /// Order and spacing of the footfalls.
     Footfalls,
     /// The lead is the one the footfalls have, and the gait has one at all.
@@ -75,6 +77,8 @@ pub enum Check {
     StanceTrend,
     /// Duty factor falls as speed rises.
     DutyTrend,
+    /// Swing time of a gallop hardly changes with speed.
+    SwingTrend,
 }
 
 impl Check {
@@ -95,6 +99,7 @@ impl Check {
             Self::SwingTime => "swing time",
             Self::StrideTime => "stride time",
             Self::StrideLength => "stride length",
+            Self::GaitSpeed => "speed of the gait",
             Self::Footfalls => "footfalls",
             Self::Lead => "lead",
             Self::Support => "support",
@@ -105,6 +110,7 @@ impl Check {
             Self::Ballistics => "ballistics",
             Self::StanceTrend => "stance trend",
             Self::DutyTrend => "duty factor trend",
+            Self::SwingTrend => "swing trend",
         }
     }
 }

@@ -31,7 +31,9 @@ impl Body {
             .map(|bone| {
                 let bends = closed(&|time_s| drawn.pose(time_s)[BENDS + bone]);
                 let carriage = if bone < bone::NECK { 0.0 } else { GALLOPING_NECK };
-                let offset = carriage * (mean(gallop.curves.bends_rad[bone].iter().map(|b| f64::from(*b))) - mean(bends.iter().copied()));
+                let offset = carriage
+                    * (mean(gallop.curves.bends_rad[bone].iter().map(|b| f64::from(*b)))
+                        - mean(bends.iter().copied()));
                 let [low, high] = skeleton.bones[bone].limits_rad.map(f64::from);
                 bends.into_iter().map(|bend| (bend + offset).clamp(low, high)).collect()
             })

@@ -4,20 +4,23 @@ use muybridge_core::{CURVE_SAMPLES, Contact, Limb, Pair, Skeleton, Stride};
 
 use super::body::Body;
 use super::plan::{Plan, SAMPLE};
-use crate::expansion::same_step;
 use crate::leg_reach::{LegBends, leg_bends, reach_from, willingness};
 use crate::synthetic::eased;
 
 /// Joints lose what a stance leaves them within this share of the swing.
 const FADE: f64 = 0.3;
+/// A sample this near after a stance is its end, share of the stride: phases are stored in single precision.
+const EDGE: f64 = 1e-6;
 /// Step of the differences that give the joints' speeds at the ends of a stance, share of the stride.
 const STEP: f64 = 0.004;
 /// Swinging toes clear the ground by at least half of this in the middle of the swing, share of withers height.
 const CLEARANCE: f64 = 0.03;
 /// When the legs are to be folded most, share of the flight: the fores pass the fence early in it, the hinds late.
-const FOLDED_AT: [f64; 2] = [0.35, 0.88];
+const FOLDED_AT: [f64; 2] = [0.35, 0.85];
 /// Steps from the gallop's folding to the drawn leap's where a toe does not clear the fence.
 const FOLDING_STEPS: u32 = 10;
+/// Joints keep this far from their limits at the samples, rad: two degrees, for a curve overshoots between them.
+const LIMIT_MARGIN_RAD: f32 = 0.035;
 /// Looks at a gallop's swing for the moment in which it is folded most.
 const LOOKS: usize = 100;
 
@@ -51,7 +54,7 @@ impl Folding {
 
 /// What the legs are made from.
 pub(super) struct Legs<'a> {
-    pub(super) skeleton: &'a Skeleton,
+    pub(super) skeleton: Skeleton,
     gallop: &'a Stride,
     body: &'a Body,
     /// Exponents that bring the gallop's most folded moment to where the leap needs it.
@@ -62,9 +65,10 @@ impl<'a> Legs<'a> {
     pub(super) fn new(gallop: &'a Stride, skeleton: &'a Skeleton, body: &'a Body) -> Self {
         let hurry = Limb::ALL.map(|limb| {
             let wanted = wanted_share(&body.plan, limb);
-            most_folded_share(gallop, skeleton, limb).ln() / wanted.ln()
+            // An exponent below 1 would begin the swing with a jerk.
+            (most_folded_share(gallop, skeleton, limb).ln() / wanted.ln()).max(1.0)
         });
-        Self { skeleton, gallop, body, hurry }
+        Self { skeleton: stiffer(skeleton), gallop, body, hurry }
     }
 
     /// The gallop's bends and scapula slides at the same point of each leg's step, folded further as wished.
@@ -85,7 +89,8 @@ impl<'a> Legs<'a> {
     pub(super) fn set_prints(&self, stride: &mut Stride) {
         for limb in Limb::ALL {
             let contact = stride.contacts[limb.index()];
-            let middle = stride.pose(contact.strike_phase + 0.5 * contact.duty_factor()).joints(self.skeleton);
+            let middle =
+                stride.pose(contact.strike_phase + 0.5 * contact.duty_factor()).joints(&self.skeleton);
             let from = match limb.pair() {
                 Pair::Fore => middle.bases[limb.first_bone()],
                 Pair::Hind => middle.root,
@@ -107,7 +112,7 @@ impl<'a> Legs<'a> {
         for k in 0..CURVE_SAMPLES {
             let phase = k as f64 / CURVE_SAMPLES as f64;
             let since = (phase - f64::from(contact.strike_phase)).rem_euclid(1.0);
-            let bends = if since <= duty + 1e-6 {
+            let bends = if since <= duty + EDGE {
                 let (bends, left_m) = self.standing(stride, limb, since);
                 lacking_m = lacking_m.max(left_m);
                 bends
@@ -129,7 +134,7 @@ impl<'a> Legs<'a> {
         let pose = stride.pose(phase as f32);
         let start = leg_bends(&self.gallop.pose(self.gallop_phase(limb, phase) as f32), limb);
         let at_m = [f64::from(stride.prints_m[limb.index()]), 0.0];
-        reach_from(start, &pose, self.skeleton, limb, willingness(limb, true), at_m)
+        reach_from(start, &pose, &self.skeleton, limb, willingness(limb, true), at_m)
     }
 
     /// What the stances leave to the swing between them.
@@ -141,9 +146,10 @@ impl<'a> Legs<'a> {
         let (start, before) = (standing(duty), standing(duty - STEP));
         let (end, after) = (standing(0.0), standing(STEP));
         let strike = f64::from(contact.strike_phase);
-        let folded = |since: f64| leg_bends(&self.gallop.pose(self.gallop_phase(limb, strike + since) as f32), limb);
-        let (left, leaving) = (folded(duty + 1e-7), folded(duty + STEP));
-        let (come, coming) = (folded(1.0 - 1e-7), folded(1.0 - STEP));
+        let folded =
+            |since: f64| leg_bends(&self.gallop.pose(self.gallop_phase(limb, strike + since) as f32), limb);
+        let (left, leaving) = (folded(duty), folded(duty + STEP));
+        let (come, coming) = (folded(1.0), folded(1.0 - STEP));
         let scale = swing / STEP;
         Swing {
             misses: std::array::from_fn(|j| [start[j] - left[j], end[j] - come[j]]),
@@ -162,12 +168,12 @@ impl<'a> Legs<'a> {
         for (joint, bend) in bends.iter().enumerate() {
             pose.bends_rad[limb.first_bone() + joint] = *bend as f32;
         }
-        let toe = pose.joints(self.skeleton).toe(limb);
+        let toe = pose.joints(&self.skeleton).toe(limb);
         let y = f64::from(toe.y);
         let clearance_m =
             CLEARANCE * f64::from(self.skeleton.withers_height_m) * 16.0 * (share * (1.0 - share)).powi(2);
         let at_m = [f64::from(toe.x), 0.5 * (y + y.hypot(clearance_m))];
-        reach_from(bends, &pose, self.skeleton, limb, willingness(limb, false), at_m).0
+        reach_from(bends, &pose, &self.skeleton, limb, willingness(limb, false), at_m).0
     }
 
     /// The gallop's bends at a leg's point of its step, and as far as wished those of the drawn leap.
@@ -195,10 +201,19 @@ impl<'a> Legs<'a> {
         let (new, old) = (self.body.plan.held[limb.index()], self.gallop.contacts[limb.index()]);
         let hurried = swing_share(new, phase).map_or(phase, |share| {
             let duty = f64::from(new.duty_factor());
-            f64::from(new.strike_phase) + duty + share.powf(self.hurry[limb.index()]) * (1.0 - duty) * (1.0 - 1e-9)
+            f64::from(new.strike_phase) + duty + share.powf(self.hurry[limb.index()]) * (1.0 - duty)
         });
-        same_step(hurried, new, old)
+        f64::from(new.same_step(old, hurried as f32))
     }
+}
+
+/// The same horse with joints that do not bend quite to their limits.
+fn stiffer(skeleton: &Skeleton) -> Skeleton {
+    let mut stiffer = skeleton.clone();
+    for bone in &mut stiffer.bones {
+        bone.limits_rad = [bone.limits_rad[0] + LIMIT_MARGIN_RAD, bone.limits_rad[1] - LIMIT_MARGIN_RAD];
+    }
+    stiffer
 }
 
 /// What is added to a leg's folding through the air so that it leaves one stance and comes to the next without a jerk.
@@ -211,7 +226,9 @@ struct Swing {
 
 impl Swing {
     fn at(&self, share: f64, folded: LegBends) -> LegBends {
-        std::array::from_fn(|joint| folded[joint] + eased(self.misses[joint], self.slopes[joint], share, FADE))
+        std::array::from_fn(|joint| {
+            folded[joint] + eased(self.misses[joint], self.slopes[joint], share, FADE)
+        })
     }
 }
 
@@ -224,12 +241,12 @@ fn swing_share(contact: Contact, phase: f64) -> Option<f64> {
 
 /// Share of a leg's swing at which it is to be folded most.
 fn wanted_share(plan: &Plan, limb: Limb) -> f64 {
-    let last = |pair: Pair, instant: fn(&Contact) -> f32| {
+    let instants = |pair: Pair, instant: fn(&Contact) -> f32| {
         let of_pair = Limb::ALL.into_iter().filter(move |limb| limb.pair() == pair);
         of_pair.map(move |limb| f64::from(instant(&plan.contacts[limb.index()])))
     };
-    let take_off = last(Pair::Hind, |contact| contact.lift_off_phase).fold(0.0, f64::max);
-    let touch_down = last(Pair::Fore, |contact| contact.strike_phase).fold(1.0, f64::min);
+    let take_off = instants(Pair::Hind, |hind| hind.lift_off_phase).fold(0.0, f64::max);
+    let touch_down = instants(Pair::Fore, |fore| fore.strike_phase).fold(1.0, f64::min);
     let at = take_off + FOLDED_AT[limb.pair() as usize] * (touch_down - take_off);
     swing_share(plan.contacts[limb.index()], at).unwrap_or(0.5)
 }

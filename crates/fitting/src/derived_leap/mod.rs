@@ -17,7 +17,7 @@ use plan::Plan;
 
 /// Height of the fence that every toe clears, share of the withers height: 0.8 m for a horse of 1.6 m.
 const FENCE: f64 = 0.5;
-/// Rounds in which body and legs settle on one centre of mass, and in which the body is lowered until every leg reaches its
+/// Rounds in which body and legs settle on one centre of mass, and the body is lowered until every leg reaches its
 /// print: the legs hold a fifth of the mass, so each round leaves a fifth of the error.
 const SETTLING_ROUNDS: usize = 12;
 /// A standing toe farther than this from its print makes the body give way, m.
@@ -57,7 +57,7 @@ fn settled(gallop: &Stride, body: &Body, legs: &Legs<'_>, folding: Folding) -> O
     legs.fold(&mut stride, folding);
     let (mut lowered_m, mut lacking_m) = (0.0, f64::INFINITY);
     for _ in 0..SETTLING_ROUNDS {
-        body.place_root(&mut stride, legs.skeleton, lowered_m);
+        body.place_root(&mut stride, &legs.skeleton, lowered_m);
         legs.set_prints(&mut stride);
         lacking_m = legs.solve(&mut stride, folding);
         if lacking_m > REACH_TOLERANCE_M {
@@ -88,8 +88,9 @@ fn provenance(gallop: &Stride, folding: Folding) -> Provenance {
     Provenance::Derived {
         from: vec![gallop.id.clone()],
         how: format!(
-            "no plate shows a leap: the gallop's horse and limb folding{more}; trunk, footfalls and a ballistic centre of mass \
-             from the model of a drawn leap; head and neck carried half as in the gallop, moved as in the model"
+            "no plate shows a leap: the gallop's horse and limb folding, timed for a fence{more}; trunk, footfalls and a \
+             ballistic centre of mass from the model of a drawn leap; neck and head carried half as in the \
+             gallop, moved as in the model"
         ),
     }
 }

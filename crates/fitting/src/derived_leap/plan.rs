@@ -28,7 +28,8 @@ impl Plan {
         let span_s = leap.span_s(Limb::new(Pair::Hind, lead.opposite()));
         let stride_time_s = span_s[1] - span_s[0];
         // Instants lie on samples, so that no curve has to turn between two of them.
-        let sample = |time_s: f64| ((time_s - span_s[0]) / stride_time_s * CURVE_SAMPLES as f64).round() as usize;
+        let sample =
+            |time_s: f64| ((time_s - span_s[0]) / stride_time_s * CURVE_SAMPLES as f64).round() as usize;
         let mut stances: [LeapStance; 4] = Limb::ALL.map(|limb| leap.stance(limb));
         // Both hinds push off at once: the leading one, a hundredth of a second later, would be at the end of its reach.
         let [left_hind, right_hind] = [Limb::LH, Limb::RH].map(|limb| stances[limb.index()].lift_off_s);

@@ -369,7 +369,12 @@ fn pastern_rad([strike, loaded, lift_off]: [f64; 3], share: f64) -> f64 {
 }
 
 /// A curve that has these values and slopes at the ends of the swing and fades within `fade` of them, or sooner.
-pub(crate) fn eased([start, end]: [f64; 2], [start_slope, end_slope]: [f64; 2], share: f64, fade: f64) -> f64 {
+pub(crate) fn eased(
+    [start, end]: [f64; 2],
+    [start_slope, end_slope]: [f64; 2],
+    share: f64,
+    fade: f64,
+) -> f64 {
     let piece = |value: f64, slope: f64, past: f64| {
         let held = 1.0 - (past / fade).min(1.0);
         // A slope that fades over a length runs on by 4/27 of their product.

@@ -246,6 +246,13 @@ mod tests {
     }
 
     #[test]
+    fn a_leap_that_lands_on_its_hind_feet_is_found() {
+        let leap = Specimen { gait: Gait::Leap, lead: None, duties: [0.28; 4], ..Specimen::gallop() };
+        assert_eq!(checks_of(&Specimen { strikes: [0.5, 0.72, 0.0, 0.18], ..leap }.stride()), []);
+        assert_eq!(checks_of(&leap.stride()), [Check::Suspension]);
+    }
+
+    #[test]
     fn a_walk_unsupported_for_3_percent_is_found() {
         let strikes = [0.16, 0.66, 0.0, 0.5];
         let duties = [0.31, 0.70, 0.47, 0.52];

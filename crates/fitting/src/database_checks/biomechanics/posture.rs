@@ -6,7 +6,8 @@ use super::super::{Check, Deviation, Subject};
 
 /// Bone of a foreleg, from the scapula, whose bend is the knee's (carpus).
 const METACARPAL: usize = 3;
-/// The knee's bend from straight while the leg carries, degrees.
+/// The knee's bend from straight while the leg carries, degrees: the fitted photographs show 15 forward to 14 back, and a marker
+/// beside the joint's axis shifts it by some degrees.
 const STRAIGHT_DEG: f64 = 20.0;
 /// Share of the stance at each end that is left out: the leg is being loaded or is breaking over.
 const EDGE: f64 = 0.1;
@@ -16,7 +17,7 @@ const SAMPLES: usize = 80;
 const WALKING_M_S: f64 = 1.1;
 /// The hind print may lie this far behind the fore print, m: a toe is placed to about 0.04, and a hoof is 0.13 long.
 const SHORTEST_OVERSTEP_M: f64 = -0.05;
-/// Longest overstep, m: free walks of large horses reach about 0.4; more is a wrong print.
+/// Longest overstep, m: captured walks reach 0.3, 0.5 where they are made faster; more is a wrong print.
 const LONGEST_OVERSTEP_M: f64 = 0.6;
 
 pub(super) fn check(subject: &Subject<'_>) -> Vec<Deviation> {

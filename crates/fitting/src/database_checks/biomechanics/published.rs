@@ -133,6 +133,11 @@ const fn racing_trot(quantity: Quantity, points: &'static [[f64; 2]]) -> Band {
     Band { reach: RACING_REACH, ..band(Gait::Trot, quantity, points, RACING_TROT) }
 }
 
+/// Horses change from walk to trot at this Froude number (Griffin et al. 2004, J Exp Biol 207:4215).
+const WALK_TROT_FROUDE: f64 = 0.35;
+/// They may be asked to walk faster or trot slower: by this factor of the Froude number, 22 % of speed.
+const WALK_TROT_OVERLAP: f64 = 1.5;
+
 /// Duty factors of galloping forelimbs, from stance and swing.
 pub(super) const GALLOP_FORE_DUTY: [[f64; 2]; 2] = [[9.0, 0.26], [17.0, 0.18]];
 
@@ -173,7 +178,21 @@ const BANDS: [Band; 18] = [
 
 pub(super) fn check(subject: &Subject<'_>) -> Vec<Deviation> {
     let bands = BANDS.iter().filter(|band| band.gait == subject.stride.gait);
-    bands.filter_map(|band| band.deviation(subject)).collect()
+    bands.filter_map(|band| band.deviation(subject)).chain(walk_or_trot(subject)).collect()
+}
+
+/// A walk too fast for a walk, or a trot too slow for a trot.
+fn walk_or_trot(subject: &Subject<'_>) -> Option<Deviation> {
+    let allowed = match subject.stride.gait {
+        Gait::Walk => [0.0, WALK_TROT_FROUDE * WALK_TROT_OVERLAP],
+        Gait::Trot => [WALK_TROT_FROUDE / WALK_TROT_OVERLAP, f64::MAX],
+        _ => return None,
+    };
+    let (froude, gait) = (froude(subject), subject.stride.gait);
+    let text = format!(
+        "a {gait} at a Froude number of {froude:.2}; walk turns to trot at {WALK_TROT_FROUDE} (Griffin et al. 2004)"
+    );
+    subject.require(Check::GaitSpeed, froude, allowed, text)
 }
 
 impl Band {
@@ -251,6 +270,12 @@ mod tests {
     fn a_hurried_walk_is_found() {
         let stride = Specimen { stride_time_s: 0.85, ..Specimen::walk() }.stride();
         assert_eq!(checks_of(&stride), [Check::StrideTime]);
+    }
+
+    #[test]
+    fn a_trot_at_a_walking_speed_is_found() {
+        let trot = Specimen { speed_m_s: 1.5, stride_time_s: 0.85, ..Specimen::trot() };
+        assert_eq!(checks_of(&trot.stride()), [Check::GaitSpeed]);
     }
 
     #[test]
