@@ -8,7 +8,7 @@
 
 use muybridge_core::{CURVE_SAMPLES, Contact, Limb, Pair, Pose, Provenance, Skeleton, Stride};
 
-use crate::leg_reach::{LegBends, leg_bends, reach_from, willingness};
+use crate::leg_reach::{LegBends, Willingness, leg_bends, reach_from};
 
 /// A toe in the air may miss its place by this before the body gives way, m; less as it nears the ground, where it must not.
 const SLACK_M: f64 = 0.08;
@@ -251,7 +251,6 @@ fn ease(share: f64) -> f64 {
 /// Samples are taken in turn from the middle of the swing, each beginning with most of what the last one was turned by, so
 /// that neighbours find neighbouring solutions.
 fn solve_leg(solved: &mut Stride, from: &Stride, skeleton: &Skeleton, limb: Limb, path: &ToePath) -> f64 {
-    let [free, loaded] = [false, true].map(|loaded| willingness(limb, loaded));
     let contact = from.contacts[limb.index()];
     let middle = contact.lift_off_phase + 0.5 * (1.0 - contact.duty_factor());
     let first = (middle * CURVE_SAMPLES as f32) as usize;
@@ -262,7 +261,7 @@ fn solve_leg(solved: &mut Stride, from: &Stride, skeleton: &Skeleton, limb: Limb
         let pose = from.pose(sample_phase(k) as f32);
         let captured = leg_bends(&pose, limb);
         let start = std::array::from_fn(|joint| captured[joint] + CARRIED * turned[joint]);
-        let willing = std::array::from_fn(|joint| free[joint] + place.load * (loaded[joint] - free[joint]));
+        let willing = Willingness::under(limb, place.load);
         let (mut bends, left_m) = reach_from(start, &pose, skeleton, limb, willing, place.at_m);
         lacking_m = lacking_m.max(left_m - SLACK_M * (1.0 - place.load));
         if place.load < 1.0 && left_m > REACH_TOLERANCE_M {

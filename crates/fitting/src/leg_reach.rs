@@ -10,30 +10,53 @@ const STEPS: usize = 60;
 /// A toe this near its place is there, m: a tenth of what the database's rounding moves it.
 const THERE_M: f64 = 2e-6;
 
+/// What solved bends keep from the skeleton's limits, rad (one degree): curves between samples overshoot by as much.
+const LIMIT_MARGIN_RAD: f64 = 0.0175;
+/// Greatest bend of a fetlock under load, rad: 70 degrees of dorsiflexion are what racehorses reach at full gallop.
+const LOADED_FETLOCK_RAD: f64 = 1.22;
+/// Greatest bend of a free fetlock, rad; the skeleton's own limit is nearer.
+const FREE_FETLOCK_RAD: f64 = 1.6;
+
+/// Least height of a loaded fetlock over the toe, as a share of the pastern's length: it comes near the ground at full gallop, but does
+/// not touch it.
+const FETLOCK_HEIGHT: f64 = 0.2;
+
 /// Bends of a leg from its root (scapula, pelvis) to its hoof, rad.
 pub(crate) type LegBends = [f64; 5];
 
-/// Willingness of each joint to turn, root to fetlock.
-///
-/// Scapula and pelvis carry the trunk and give way last. The carpus of a loaded foreleg is locked straight, so that a bent,
-/// loaded foreleg never comes out of it; in the air it turns as freely as the others.
-pub(crate) fn willingness(limb: Limb, loaded: bool) -> LegBends {
-    match (limb.pair(), loaded) {
-        (Pair::Fore, true) => [0.3, 1.0, 1.0, 0.1, 1.0],
-        (Pair::Fore, false) | (Pair::Hind, _) => [0.3, 1.0, 1.0, 1.0, 1.0],
-    }
+/// How readily each joint of a leg turns, root to fetlock, and how far it may.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Willingness {
+    turns: LegBends,
+    /// Greatest bend of the fetlock, rad.
+    fetlock_rad: f64,
+    load: f64,
 }
 
-/// Turns the joints of a leg as little as it takes to bring its toe to a place in the root's plane (metres along the track
-/// and over the ground), within the joint limits. Returns the bends and what is left, m.
-pub(crate) fn reach(
-    pose: &Pose,
-    skeleton: &Skeleton,
-    limb: Limb,
-    willing: LegBends,
-    at_m: [f64; 2],
-) -> (LegBends, f64) {
-    reach_from(leg_bends(pose, limb), pose, skeleton, limb, willing, at_m)
+/// The willingness of a leg that carries weight, or none.
+pub(crate) fn willingness(limb: Limb, loaded: bool) -> Willingness {
+    Willingness::under(limb, if loaded { 1.0 } else { 0.0 })
+}
+
+impl Willingness {
+    /// The willingness under a load from 0, in the air, to 1, in stance.
+    ///
+    /// Scapula and pelvis carry the trunk and give way last. The carpus of a loaded foreleg is locked straight, so that a bent,
+    /// loaded foreleg never comes out of it; a loaded fetlock sinks to [`LOADED_FETLOCK_RAD`] at most.
+    pub(crate) fn under(limb: Limb, load: f64) -> Self {
+        let carpus = if limb.pair() == Pair::Fore { 1.0 - 0.9 * load } else { 1.0 };
+        let fetlock_rad = FREE_FETLOCK_RAD + load * (LOADED_FETLOCK_RAD - FREE_FETLOCK_RAD);
+        Self { turns: [0.3, 1.0, 1.0, carpus, 1.0], fetlock_rad, load }
+    }
+
+    /// Limits of a leg's bends, a little inside the skeleton's.
+    fn limits(&self, skeleton: &Skeleton, limb: Limb) -> [[f64; 2]; 5] {
+        std::array::from_fn(|joint| {
+            let [low, high] = skeleton.bones[limb.first_bone() + joint].limits_rad.map(f64::from);
+            let high = if joint == 4 { high.min(self.fetlock_rad) } else { high };
+            [low + LIMIT_MARGIN_RAD, high - LIMIT_MARGIN_RAD]
+        })
+    }
 }
 
 /// A pose's bends of a leg.
@@ -41,18 +64,20 @@ pub(crate) fn leg_bends(pose: &Pose, limb: Limb) -> LegBends {
     std::array::from_fn(|joint| f64::from(pose.bends_rad[limb.first_bone() + joint]))
 }
 
-/// The same from other bends than the pose's own.
+/// Turns the joints of a leg from a start as little as it takes to bring its toe to a place in the root's plane (metres along
+/// the track and over the ground), within the joint limits; trunk and limb roots are the pose's. Returns the bends and what
+/// is left, m.
 pub(crate) fn reach_from(
     start: LegBends,
     pose: &Pose,
     skeleton: &Skeleton,
     limb: Limb,
-    willing: LegBends,
+    willing: Willingness,
     [x, y]: [f64; 2],
 ) -> (LegBends, f64) {
     let leg = Leg::new(pose, skeleton, limb);
-    let limits: [[f64; 2]; 5] =
-        std::array::from_fn(|joint| skeleton.bones[limb.first_bone() + joint].limits_rad.map(f64::from));
+    let mut limits = willing.limits(skeleton, limb);
+    let most_bent = limits[4][1];
     let mut bends: LegBends =
         std::array::from_fn(|joint| start[joint].clamp(limits[joint][0], limits[joint][1]));
     let mut best = (bends, f64::INFINITY);
@@ -66,7 +91,9 @@ pub(crate) fn reach_from(
         if miss.norm() < THERE_M {
             break;
         }
-        let Some(turn) = turn(&places, &bends, &limits, &willing, miss) else { break };
+        limits[4][1] =
+            most_bent.min(leg.fetlock_over_ground(&places, &bends, willing.load)).max(limits[4][0]);
+        let Some(turn) = turn(&places, &bends, &limits, &willing.turns, miss) else { break };
         for joint in 0..5 {
             bends[joint] = (bends[joint] + turn[joint]).clamp(limits[joint][0], limits[joint][1]);
         }
@@ -129,6 +156,18 @@ impl Leg {
         }
     }
 
+    /// The bend of the fetlock, rad, at which it is [`FETLOCK_HEIGHT`] over a toe that stands on the ground; less and less strict as
+    /// the load goes.
+    fn fetlock_over_ground(&self, places: &[[f64; 2]; 6], bends: &LegBends, load: f64) -> f64 {
+        let pastern = [places[5][0] - places[4][0], places[5][1] - places[4][1]];
+        let cannon_angle = pastern[1].atan2(pastern[0]) - bends[4];
+        let height = FETLOCK_HEIGHT - 2.0 * (1.0 - load);
+        // The cannon hangs down, the pastern runs on forward: angles counted from there do not wrap.
+        let hanging =
+            (cannon_angle + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+        -height.clamp(-1.0, 1.0).asin() - hanging
+    }
+
     /// Proximal ends of the five bones, and the toe.
     fn joints(&self, bends: &LegBends) -> [[f64; 2]; 6] {
         let mut places = [self.root; 6];
@@ -155,7 +194,14 @@ mod tests {
             let toe = pose.joints(&skeleton).toe(limb);
             for [dx, dy] in [[0.2, 0.02], [-0.25, 0.03], [0.0, 0.2], [0.1, 0.1]] {
                 let wanted = [f64::from(toe.x) + dx, f64::from(toe.y) + dy];
-                let (bends, left) = reach(&pose, &skeleton, limb, willingness(limb, false), wanted);
+                let (bends, left) = reach_from(
+                    leg_bends(&pose, limb),
+                    &pose,
+                    &skeleton,
+                    limb,
+                    willingness(limb, false),
+                    wanted,
+                );
                 assert!(left < 1e-5, "{limb:?} misses {wanted:?} by {left}");
                 let mut there = pose;
                 for (joint, bend) in bends.iter().enumerate() {
@@ -174,7 +220,10 @@ mod tests {
         let pose = Pose::standing(&skeleton);
         let toe = pose.joints(&skeleton).toe(Limb::LF);
         let wanted = [f64::from(toe.x) + 0.15, f64::from(toe.y) + 0.02];
-        let carpus = |loaded| reach(&pose, &skeleton, Limb::LF, willingness(Limb::LF, loaded), wanted).0[3];
+        let carpus = |loaded| {
+            let start = leg_bends(&pose, Limb::LF);
+            reach_from(start, &pose, &skeleton, Limb::LF, willingness(Limb::LF, loaded), wanted).0[3]
+        };
         assert!(carpus(true).abs() < 0.05 && carpus(true).abs() < carpus(false).abs());
     }
 
@@ -182,7 +231,9 @@ mod tests {
     fn out_of_reach_is_said() {
         let skeleton = Skeleton::reference();
         let pose = Pose::standing(&skeleton);
-        let (bends, left) = reach(&pose, &skeleton, Limb::RH, willingness(Limb::RH, true), [3.0, 0.0]);
+        let willing = willingness(Limb::RH, true);
+        let start = leg_bends(&pose, Limb::RH);
+        let (bends, left) = reach_from(start, &pose, &skeleton, Limb::RH, willing, [3.0, 0.0]);
         assert!(left > 1.0 && bends.iter().all(|bend| bend.is_finite()));
     }
 }

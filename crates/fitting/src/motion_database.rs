@@ -6,6 +6,7 @@ use muybridge_core::{
 };
 
 use crate::chain::Attachment;
+use crate::derived_leap::leap;
 use crate::expansion::{Pace, expand};
 use crate::gait_laws::{Evidence, captured, gait_laws};
 use crate::layout::{BENDS, PITCH, ROOT_X, ROOT_Y, SLIDES};
@@ -28,6 +29,7 @@ pub fn build_database(evidence: &Evidence<'_>, skeleton: &Skeleton) -> Database 
         strides.extend(captures);
     }
     strides.extend(ambles(&strides, &laws, skeleton));
+    strides.extend(derived_leap(&strides, skeleton));
     strides.sort_by(|a, b| {
         a.gait.cmp(&b.gait).then(a.speed_m_s.total_cmp(&b.speed_m_s)).then_with(|| a.id.cmp(&b.id))
     });
@@ -63,7 +65,7 @@ fn expanded_strides(captured: &Stride, laws: &[ContactLaw], skeleton: &Skeleton)
 
 /// The amble at every whole mile per hour, from the walk that stands for its gait; nothing where an amble was captured.
 fn ambles(strides: &[Stride], laws: &[ContactLaw], skeleton: &Skeleton) -> Vec<Stride> {
-    let walk = strides.iter().find(|s| s.gait == Gait::Walk && s.provenance.kind() == "captured");
+    let walk = first_capture(strides, Gait::Walk);
     let known = strides.iter().any(|stride| stride.gait == Gait::Amble);
     let (Some(walk), Some(laws), false) = (walk, limb_laws(laws, Gait::Amble), known) else {
         return Vec::new();
@@ -90,6 +92,21 @@ fn ambles(strides: &[Stride], laws: &[ContactLaw], skeleton: &Skeleton) -> Vec<S
             Some(stride)
         })
         .collect()
+}
+
+/// The leap from the gallop that stands for its gait; nothing where a leap was captured.
+fn derived_leap(strides: &[Stride], skeleton: &Skeleton) -> Option<Stride> {
+    if strides.iter().any(|stride| stride.gait == Gait::Leap) {
+        return None;
+    }
+    let mut stride = leap(first_capture(strides, Gait::Gallop)?, skeleton)?;
+    round_stride(&mut stride);
+    Some(stride)
+}
+
+/// The capture that stands for a gait: they come in that order.
+fn first_capture(strides: &[Stride], gait: Gait) -> Option<&Stride> {
+    strides.iter().find(|s| s.gait == gait && matches!(s.provenance, Provenance::Captured { .. }))
 }
 
 /// A fitted plate as a stride of the database; phase 0 is the strike of the left hind.

@@ -10,11 +10,12 @@ const STANCE_SAMPLES: usize = 241;
 const MADE_HEIGHT_M: f64 = 0.005;
 /// A made stride's toe keeps its mean place to this, m: below what shows against a texture at the eye's distance.
 const MADE_SLIDE_M: f64 = 0.002;
-/// A capture is a fit to points that a person placed on a photograph, good to 1 or 2 % of withers height, and its instants
-/// are known to a fraction of a panel: the toe may stand this far over or under the ground, m.
-const CAPTURED_HEIGHT_M: f64 = 0.040;
-/// For the same reason the toe may stand this far from its mean place, m.
-const CAPTURED_SLIDE_M: f64 = 0.060;
+/// A capture is a fit to points that a person placed on a photograph, good to 1 or 2 % of withers height, on soft ground, with instants
+/// known to a fraction of a panel: the toe may stand this far over or under the ground, m (3 % of withers height; the worst of the
+/// plates, 48 mm, is a hind toe in the dust of 1878).
+const CAPTURED_HEIGHT_M: f64 = 0.050;
+/// For the same reason the toe may stand this far from its mean place, m (5 % of withers height; the worst is 63 mm).
+const CAPTURED_SLIDE_M: f64 = 0.080;
 /// Share of a capture's stance at each end that these limits leave out: instants lie between panels, and a galloping hoof whose
 /// strike is set a hundredth of a stride too early is still 70 mm away.
 const CAPTURED_EDGE: f64 = 0.1;
@@ -174,7 +175,7 @@ mod tests {
             ..Specimen { toe_height_m, ..Specimen::trot() }.stride()
         };
         assert_eq!(checks_of(&at(0.03)), []);
-        assert_eq!(checks_of(&at(0.05)), [Check::ToeFloats]);
+        assert_eq!(checks_of(&at(0.07)), [Check::ToeFloats]);
     }
 
     #[test]

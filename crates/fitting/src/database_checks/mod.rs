@@ -10,7 +10,7 @@ mod known;
 #[cfg(test)]
 mod specimen;
 
-use muybridge_core::{Database, Gait, Limb, Provenance, Skeleton, Stride};
+use muybridge_core::{CURVE_SAMPLES, Database, Gait, Limb, Provenance, Skeleton, Stride};
 
 pub use feet::{FootErrors, foot_errors, worst_foot_errors};
 pub use known::{KNOWN_DEVIATIONS, Known, stale, unexplained};
@@ -21,8 +21,8 @@ use crate::gait_analysis::GaitAnalysis;
 /// Uncertainty given to a stored strike or lift-off, share of the stride: gaps in support of less than 0.7 % of the stride
 /// (4 ms at the trot), which come from rounding and from edges that meet, are then no suspensions.
 const INSTANT_SD: f64 = 0.0025;
-/// Poses looked at over a stride: five to each sample of its curves.
-const STRIDE_SAMPLES: usize = 240;
+/// Poses looked at over a stride: four to each sample of its curves.
+const STRIDE_SAMPLES: usize = 4 * CURVE_SAMPLES;
 
 /// What is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

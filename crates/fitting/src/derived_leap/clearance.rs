@@ -19,7 +19,12 @@ impl Fence {
     pub(super) fn under(stride: &Stride, skeleton: &Skeleton, height: f64) -> Self {
         let prints = |pair: Pair| {
             let legs = Limb::ALL.into_iter().filter(move |limb| limb.pair() == pair);
-            legs.map(|limb| f64::from(stride.prints_m[limb.index()]))
+            legs.map(|limb| {
+                let contact = stride.contacts[limb.index()];
+                // The stance that runs into phase 0 began with the print a stride behind the stored one.
+                let turns = if contact.strike_phase > contact.lift_off_phase { 1.0 } else { 0.0 };
+                f64::from(stride.prints_m[limb.index()] - turns * stride.stride_length_m())
+            })
         };
         let last_m = prints(Pair::Hind).fold(f64::NEG_INFINITY, f64::max);
         let first_m = prints(Pair::Fore).fold(f64::INFINITY, f64::min);

@@ -1,5 +1,7 @@
 //! The legs of the leap: toes that stand still, and the gallop's folding between.
 
+use std::f64::consts::PI;
+
 use muybridge_core::{CURVE_SAMPLES, Contact, Limb, Pair, Skeleton, Stride};
 
 use super::body::Body;
@@ -22,7 +24,7 @@ const FOLDING_STEPS: u32 = 10;
 /// Joints keep this far from their limits at the samples, rad: two degrees, for a curve overshoots between them.
 const LIMIT_MARGIN_RAD: f32 = 0.035;
 /// Looks at a gallop's swing for the moment in which it is folded most.
-const LOOKS: usize = 100;
+const LOOKS: usize = 200;
 
 /// How far each pair of legs is folded as in the drawn leap rather than as in the gallop, 0 to 1.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,14 +73,28 @@ impl<'a> Legs<'a> {
         Self { skeleton: stiffer(skeleton), gallop, body, hurry }
     }
 
-    /// The gallop's bends and scapula slides at the same point of each leg's step, folded further as wished.
-    pub(super) fn fold(&self, stride: &mut Stride, folding: Folding) {
+    /// The gallop's bends at the same point of each leg's step, folded further as wished: of each leg, at every sample.
+    pub(super) fn folded(&self, folding: Folding) -> [Vec<LegBends>; 4] {
+        Limb::ALL.map(|limb| {
+            let share = folding.share(limb.pair());
+            let bends = |k: usize| {
+                let phase = k as f64 * SAMPLE;
+                let galloping = self.galloping(limb, phase);
+                let Some(drawn) = self.drawn(limb, phase).filter(|_| share > 0.0) else { return galloping };
+                let hump = share * (PI * drawn.share).sin().powi(2);
+                std::array::from_fn(|joint| galloping[joint] + hump * (drawn.bends[joint] - galloping[joint]))
+            };
+            (0..CURVE_SAMPLES).map(bends).collect()
+        })
+    }
+
+    /// Bends the legs as folded, and slides the scapulae as in the gallop.
+    pub(super) fn shape(&self, stride: &mut Stride, folded: &[Vec<LegBends>; 4]) {
         for limb in Limb::ALL {
-            for k in 0..CURVE_SAMPLES {
-                let phase = k as f64 / CURVE_SAMPLES as f64;
-                set_bends(stride, limb, k, self.folded(limb, phase, folding));
+            for (k, bends) in folded[limb.index()].iter().enumerate() {
+                set_bends(stride, limb, k, *bends);
                 if limb.pair() == Pair::Fore {
-                    let pose = self.gallop.pose(self.gallop_phase(limb, phase) as f32);
+                    let pose = self.gallop.pose(self.gallop_phase(limb, k as f64 * SAMPLE));
                     stride.curves.scapula_slides_m[limb.index()][k] = pose.scapula_slides_m[limb.index()];
                 }
             }
@@ -100,17 +116,18 @@ impl<'a> Legs<'a> {
     }
 
     /// Puts every leg to its place at every sample; returns what the worst standing one lacks, m.
-    pub(super) fn solve(&self, stride: &mut Stride, folding: Folding) -> f64 {
-        Limb::ALL.into_iter().map(|limb| self.solve_leg(stride, limb, folding)).fold(0.0, f64::max)
+    pub(super) fn solve(&self, stride: &mut Stride, folded: &[Vec<LegBends>; 4]) -> f64 {
+        let lacks = Limb::ALL.into_iter().map(|limb| self.solve_leg(stride, limb, &folded[limb.index()]));
+        lacks.fold(0.0, f64::max)
     }
 
-    fn solve_leg(&self, stride: &mut Stride, limb: Limb, folding: Folding) -> f64 {
+    fn solve_leg(&self, stride: &mut Stride, limb: Limb, folded: &[LegBends]) -> f64 {
         let contact = self.body.plan.held[limb.index()];
         let duty = f64::from(contact.duty_factor());
         let swing = self.swing(stride, limb);
         let mut lacking_m: f64 = 0.0;
-        for k in 0..CURVE_SAMPLES {
-            let phase = k as f64 / CURVE_SAMPLES as f64;
+        for (k, folded) in folded.iter().enumerate() {
+            let phase = k as f64 * SAMPLE;
             let since = (phase - f64::from(contact.strike_phase)).rem_euclid(1.0);
             let bends = if since <= duty + EDGE {
                 let (bends, left_m) = self.standing(stride, limb, since);
@@ -118,7 +135,7 @@ impl<'a> Legs<'a> {
                 bends
             } else {
                 let share = (since - duty) / (1.0 - duty);
-                let bends = swing.at(share, self.folded(limb, phase, folding));
+                let bends = swing.at(share, folded);
                 self.over_ground(stride, limb, phase, share, bends)
             };
             set_bends(stride, limb, k, bends);
@@ -132,7 +149,7 @@ impl<'a> Legs<'a> {
         let early = SAMPLE - since;
         let phase = f64::from(stride.contacts[limb.index()].strike_phase) - early;
         let pose = stride.pose(phase as f32);
-        let start = leg_bends(&self.gallop.pose(self.gallop_phase(limb, phase) as f32), limb);
+        let start = self.galloping(limb, phase);
         let at_m = [f64::from(stride.prints_m[limb.index()]), 0.0];
         reach_from(start, &pose, &self.skeleton, limb, willingness(limb, true), at_m)
     }
@@ -146,8 +163,7 @@ impl<'a> Legs<'a> {
         let (start, before) = (standing(duty), standing(duty - STEP));
         let (end, after) = (standing(0.0), standing(STEP));
         let strike = f64::from(contact.strike_phase);
-        let folded =
-            |since: f64| leg_bends(&self.gallop.pose(self.gallop_phase(limb, strike + since) as f32), limb);
+        let folded = |since: f64| self.galloping(limb, strike + since);
         let (left, leaving) = (folded(duty), folded(duty + STEP));
         let (come, coming) = (folded(1.0), folded(1.0 - STEP));
         let scale = swing / STEP;
@@ -176,34 +192,33 @@ impl<'a> Legs<'a> {
         reach_from(bends, &pose, &self.skeleton, limb, willingness(limb, false), at_m).0
     }
 
-    /// The gallop's bends at a leg's point of its step, and as far as wished those of the drawn leap.
-    fn folded(&self, limb: Limb, phase: f64, folding: Folding) -> LegBends {
-        let galloping = leg_bends(&self.gallop.pose(self.gallop_phase(limb, phase) as f32), limb);
+    /// The gallop's bends at the same point of a leg's step.
+    fn galloping(&self, limb: Limb, phase: f64) -> LegBends {
+        leg_bends(&self.gallop.pose(self.gallop_phase(limb, phase)), limb)
+    }
+
+    /// The drawn leap's bends at the same share of the swing; none in stance.
+    fn drawn(&self, limb: Limb, phase: f64) -> Option<Drawn> {
         let plan = &self.body.plan;
-        let Some(share) = swing_share(plan.held[limb.index()], phase) else { return galloping };
+        let share = swing_share(plan.held[limb.index()], phase)?;
         let stance = self.body.drawn.stance(limb);
-        let hump = folding.share(limb.pair()) * (std::f64::consts::PI * share).sin().powi(2);
-        if hump == 0.0 {
-            return galloping;
-        }
-        // The hinds swing after the take-off's stance, the fores before the landing's.
         let swing_s = plan.stride_time_s - (stance.lift_off_s - stance.strike_s);
+        // The hinds swing after the take-off's stance, the fores before the landing's.
         let time_s = match limb.pair() {
             Pair::Hind => stance.lift_off_s + share * swing_s,
             Pair::Fore => stance.strike_s - (1.0 - share) * swing_s,
         };
-        let drawn = self.body.drawn_bends(limb, time_s);
-        std::array::from_fn(|joint| galloping[joint] + hump * (drawn[joint] - galloping[joint]))
+        Some(Drawn { share, bends: self.body.drawn_bends(limb, time_s) })
     }
 
     /// Phase of the gallop at the same point of a leg's step.
-    fn gallop_phase(&self, limb: Limb, phase: f64) -> f64 {
+    fn gallop_phase(&self, limb: Limb, phase: f64) -> f32 {
         let (new, old) = (self.body.plan.held[limb.index()], self.gallop.contacts[limb.index()]);
         let hurried = swing_share(new, phase).map_or(phase, |share| {
             let duty = f64::from(new.duty_factor());
             f64::from(new.strike_phase) + duty + share.powf(self.hurry[limb.index()]) * (1.0 - duty)
         });
-        f64::from(new.same_step(old, hurried as f32))
+        new.same_step(old, hurried as f32)
     }
 }
 
@@ -216,6 +231,12 @@ fn stiffer(skeleton: &Skeleton) -> Skeleton {
     stiffer
 }
 
+/// A leg of the drawn leap at a share of its swing.
+struct Drawn {
+    share: f64,
+    bends: LegBends,
+}
+
 /// What is added to a leg's folding through the air so that it leaves one stance and comes to the next without a jerk.
 struct Swing {
     /// What each joint misses at lift-off and at strike, rad.
@@ -225,7 +246,7 @@ struct Swing {
 }
 
 impl Swing {
-    fn at(&self, share: f64, folded: LegBends) -> LegBends {
+    fn at(&self, share: f64, folded: &LegBends) -> LegBends {
         std::array::from_fn(|joint| {
             folded[joint] + eased(self.misses[joint], self.slopes[joint], share, FADE)
         })

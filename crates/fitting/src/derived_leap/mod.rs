@@ -54,12 +54,13 @@ pub(crate) fn leap(gallop: &Stride, reference: &Skeleton) -> Option<Stride> {
 fn settled(gallop: &Stride, body: &Body, legs: &Legs<'_>, folding: Folding) -> Option<Stride> {
     let mut stride = begun(gallop, &body.plan);
     body.shape_trunk(&mut stride);
-    legs.fold(&mut stride, folding);
+    let folded = legs.folded(folding);
+    legs.shape(&mut stride, &folded);
     let (mut lowered_m, mut lacking_m) = (0.0, f64::INFINITY);
     for _ in 0..SETTLING_ROUNDS {
         body.place_root(&mut stride, &legs.skeleton, lowered_m);
         legs.set_prints(&mut stride);
-        lacking_m = legs.solve(&mut stride, folding);
+        lacking_m = legs.solve(&mut stride, &folded);
         if lacking_m > REACH_TOLERANCE_M {
             lowered_m += LOWERING * lacking_m;
         }

@@ -36,6 +36,8 @@ fn mirrored(gallop: &Stride) -> Stride {
         lead: gallop.lead.map(|lead| Lead { fore: lead.fore.opposite(), hind: lead.hind.opposite() }),
         contacts: mirrored,
         curves: Curves {
+            height_m: curve(&|pose| pose.root_in_world.y),
+            pitch_rad: curve(&|pose| 2.0 * pose.world_from_root.z.atan2(pose.world_from_root.w)),
             bends_rad: (0..gallop.curves.bends_rad.len()).map(|i| curve(&|pose| pose.bends_rad[i])).collect(),
             scapula_slides_m: (0..2).map(|i| curve(&|pose| pose.scapula_slides_m[i])).collect(),
             ..gallop.curves.clone()
