@@ -11,4 +11,4 @@ mod workspace;
 pub use golden::assert_golden;
 pub use program::{Run, program};
 pub use repository::{repository, shared_folder};
-pub use workspace::{SALLIE, Workspace, copy_json_files, write};
+pub use workspace::{SALLIE, Workspace, write};

@@ -1,4 +1,4 @@
-//! A copy of the repository's annotations and plates in a folder of its own, to damage and to run the programs in.
+//! A copy of one of the repository's plates in a folder of its own, to damage and to run the programs in.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use crate::program::{Run, program};
 use crate::repository;
 
-/// The plate of the repository's annotation.
+/// The plate that is copied.
 pub const SALLIE: &str = "sallie-gardner-1878";
 
 /// The copy; it is removed when dropped.
@@ -25,11 +25,13 @@ impl Default for Workspace {
 }
 
 impl Workspace {
-    /// Copies `annotations/*.json` (with the folders inside) and `plates/*.json`, but no photograph.
+    /// Copies one plate, [`SALLIE`]: annotation, second pass and manifest, but no photograph.
     pub fn new() -> Self {
         let workspace = Self { folder: tempfile::tempdir().unwrap() };
         for folder in ["annotations", "annotations/second-pass", "plates"] {
-            copy_json_files(&repository().join(folder), &workspace.path(folder));
+            let file = format!("{folder}/{SALLIE}.json");
+            std::fs::create_dir_all(workspace.path(folder)).unwrap();
+            write(&workspace.path(&file), &std::fs::read_to_string(repository().join(&file)).unwrap());
         }
         workspace
     }
@@ -118,15 +120,4 @@ impl Workspace {
 /// Replaces a file with a text.
 pub fn write(path: &Path, text: &str) {
     write_atomically(path, text.as_bytes()).unwrap();
-}
-
-/// Copies the JSON files of a folder, which may be missing, into another, which is made.
-pub fn copy_json_files(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    let Ok(entries) = std::fs::read_dir(from) else { return };
-    for path in entries.map(|entry| entry.unwrap().path()) {
-        if path.extension().is_some_and(|extension| extension == "json") {
-            std::fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
-        }
-    }
 }

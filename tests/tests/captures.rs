@@ -156,7 +156,7 @@ fn footfalls_lead_and_suspension_are_what_a_person_saw() {
         assert!(analysis.implied.agrees_with(seen.gait), "{}: {}", seen.id, analysis.implied.name());
         assert!(same_order(analysis.footfall_order(), seen), "{}: {:?}", seen.id, analysis.footfall_order());
         assert_eq!(analysis.lead.map(|lead| lead.fore), seen.lead, "{}", seen.id);
-        assert!(analysis.lead.is_none_or(|lead| lead.is_transverse()), "{}", seen.id);
+        assert!(analysis.lead.is_none_or(muybridge_core::Lead::is_transverse), "{}", seen.id);
         assert_eq!(analysis.suspensions.len(), seen.suspensions, "{}", seen.id);
         if matches!(analysis.implied, ImpliedGait::TransverseGallop | ImpliedGait::Canter) {
             assert!(analysis.suspensions[0].is_gathered(), "{}", seen.id);

@@ -65,7 +65,9 @@ fn work(files: &Files, seed: u64, with_proposals: bool) -> Result<Way, String> {
     let plate = Plate::load(&files.annotation).unwrap();
     let calibration = calibrate(&plate.manifest, &plate.annotation).unwrap();
     let reference_m = f64::from(Skeleton::reference().withers_height_m);
-    let withers_m = calibration.withers_height_m.map_or(reference_m, |height| height.value);
+    // The height of the standing animal: a moving one's withers are lower, by gait.
+    let standing = calibration.withers_height_m.filter(|_| !calibration.standing.is_empty());
+    let withers_m = standing.map_or(reference_m, |height| height.value);
     let mut person = Person::new(plate.annotation, withers_m * calibration.stride[0].px_per_m, seed);
     let mut window = Window::open(&files.manifest, &files.photograph);
     person.prepares(&mut window);

@@ -102,8 +102,10 @@ fn drop_file(window: &mut Window, path: &Path) -> Answer {
     loop {
         window.step();
         let after = last(window);
-        if after != before {
-            return Answer::Message(after.1.unwrap());
+        let spoken = after != before;
+        if spoken {
+            // What is wrong with a plate that opens all the same is said together with the question.
+            window.run_steps(2);
         }
         for (heading, leave) in QUESTIONS {
             if window.query_by_label(heading).is_some() {
@@ -114,6 +116,9 @@ fn drop_file(window: &mut Window, path: &Path) -> Answer {
                 assert!(window.query_by_label(heading).is_none(), "{}: {heading}", path.display());
                 return Answer::Question;
             }
+        }
+        if spoken {
+            return Answer::Message(after.1.unwrap());
         }
         assert!(started.elapsed() < LONGEST, "{}: no answer", path.display());
         std::thread::sleep(Duration::from_millis(1));

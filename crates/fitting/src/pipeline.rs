@@ -127,6 +127,10 @@ fn known_stride_time(plate: &Plate, observation: &StrideObservation) -> Option<S
         // After the last panel, time goes on as it did on the whole.
         let beyond = |panel: f64| last.camera.time_s + mean_interval * (panel - f64::from(last.camera.panel));
         let at = first + panels;
+        // Far beyond what is placed so far the closing says little of the panels that are.
+        if at > f64::from(last.camera.panel) + 1.0 {
+            return None;
+        }
         let low = time(at.floor()).unwrap_or_else(|| beyond(at.floor()));
         let high = time(at.ceil()).unwrap_or_else(|| beyond(at.ceil()));
         let seconds = low + (high - low) * at.fract() - start.camera.time_s;

@@ -1,30 +1,23 @@
 //! Tracked points laid on the skeleton, between what the photograph shows and what the animal can do.
 //!
-//! Tracking sees knees, hocks and hooves well, and guesses hips, shoulders and the back, which show nothing of their own.
-//! The fit of all panels with points knows the latter better: bone lengths, contacts and the swing of the neighbouring
-//! panels. So it is worked out with the tracked points in it, and each point goes towards it as far as its kind is better
-//! known from there. Points placed by hand count in the fit and stay where they are, so that a second proposal after a
-//! correction takes along what the correction implies.
+//! Tracking sees knees, hocks and hooves well, and guesses hips, shoulders and the back, which show nothing of their own. The
+//! skeleton, with the bone lengths of the panels that are done, knows the latter better. So it is posed through the tracked
+//! points, and each point goes towards it as far as its kind is better known from there. Points placed by hand count in the
+//! pose and stay where they are, so that a second proposal after a correction takes along what the correction implies.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use muybridge_capture::{
-    BodyPoint, Draft, Facing, KEYPOINT_COUNT, Keypoint, LimbJoint, PanelAnnotation, PanelCamera, PanelUse,
-    Placed, PlacedBy, Plate, calibrate,
+    BodyPoint, Draft, Facing, KEYPOINT_COUNT, Keypoint, LimbJoint, PanelAnnotation, PanelCamera, Placed,
+    PlacedBy,
 };
 use muybridge_core::Skeleton;
 use muybridge_fitting::layout::SHARED;
-use muybridge_fitting::observation::StrideObservation;
 use muybridge_fitting::posing::PanelPoser;
-use muybridge_fitting::stride_fit::{StrideTime, fit_stride};
-use muybridge_fitting::weights::Weights;
 use muybridge_imaging::track::Proposal;
 
 use crate::derived::{Derived, scatter};
 
-/// Fewest points of a panel that counts, as in a validated plate.
-const LEAST_POINTS: usize = 6;
 /// Way from the tracked place to the skeleton's for knees, hocks, fetlocks and hooves: on drawn plates both are equally
 /// good, and their errors have different causes.
 const LOWER_LIMB_SHARE: f64 = 0.5;
@@ -36,7 +29,6 @@ pub(super) struct Settling {
     skeleton: Skeleton,
     cameras: BTreeMap<u32, PanelCamera>,
     lengths: [f64; SHARED],
-    closes_after_panels: Option<f64>,
 }
 
 impl Settling {
@@ -45,11 +37,13 @@ impl Settling {
             skeleton: derived.skeleton().clone(),
             cameras: derived.cameras.clone(),
             lengths: derived.lengths,
-            closes_after_panels: derived.footfalls.as_ref().map(|f| f.clock.closes_after_panels()),
         }
     }
 
-    /// The tracked points of a panel, moved towards the skeleton that the points of all panels make.
+    /// The tracked points of a panel, moved towards the skeleton posed through them.
+    ///
+    /// A stride fitted to all panels spared no more clicks on drawn plates, and pulled what was left alone to itself: joints
+    /// came out up to a tenth farther off.
     pub(super) fn settle(&self, draft: &Draft, panel: u32, tracked: &[Proposal]) -> Vec<Proposal> {
         let mut draft = draft.clone();
         let keypoints = &mut draft.panel_mut(panel).keypoints;
@@ -58,38 +52,13 @@ impl Settling {
                 keypoints.insert(proposal.keypoint, proposal.placed);
             }
         }
-        match self.fitted_px(&draft, panel).or_else(|| self.posed_px(&draft, panel)) {
+        match self.posed_px(&draft, panel) {
             Some(places) => tracked.iter().map(|proposal| towards(proposal, &places)).collect(),
             None => tracked.to_vec(),
         }
     }
 
-    /// Places of the stride fitted to the panels that have points; none while it cannot be fitted.
-    fn fitted_px(&self, draft: &Draft, panel: u32) -> Option<Places> {
-        let mut annotation = draft.annotation.clone();
-        for panel in &mut annotation.panels {
-            if panel.keypoints.iter().filter(|(_, placed)| placed.place().is_some()).count() < LEAST_POINTS {
-                panel.usage = PanelUse::Unused;
-            }
-        }
-        let nowhere = Path::new("");
-        let plate = Plate::from_documents((nowhere, draft.manifest.clone()), (nowhere, annotation)).ok()?;
-        let calibration = calibrate(&plate.manifest, &plate.annotation).ok()?;
-        let weights = Weights::default();
-        let observation = StrideObservation::new(&plate, &calibration, &weights);
-        // A few panels do not tell where the stride closes.
-        let seconds = calibration.interval_s.value * self.closes_after_panels?;
-        let fit = fit_stride(&self.skeleton, &observation, StrideTime { seconds, sd_s: 0.0 }, &weights);
-        let slot = fit.problem.order.iter().position(|i| fit.observation.panels[*i].camera.panel == panel)?;
-        let kinematics = fit.kinematics();
-        let mut places = [[0.0; 2]; KEYPOINT_COUNT];
-        for keypoint in Keypoint::all() {
-            places[keypoint.index()] = fit.place_px(slot, &kinematics[slot], keypoint);
-        }
-        Some(places)
-    }
-
-    /// Places of the skeleton through this panel's points alone.
+    /// Places of the skeleton through this panel's points.
     fn posed_px(&self, draft: &Draft, panel: u32) -> Option<Places> {
         let facing = draft.manifest.facing.unwrap_or(Facing::Right);
         let annotation: &PanelAnnotation = draft.panel(panel)?;
