@@ -28,7 +28,7 @@ pub struct Weights {
     pub head_direction: f64,
     /// Standard deviation of the head's direction, rad.
     pub head_direction_sd: f64,
-    /// Difference of neighbouring neck bones in their bends from rest, rad: 10 degrees, so that the neck curves instead of folding.
+    /// Difference of neighbouring neck bones in their bends from rest, rad: 20 degrees, so that the neck curves instead of folding.
     pub neck_evenness_sd: f64,
     /// Scapula slide against none, m.
     pub slide_prior_sd: f64,
@@ -92,7 +92,7 @@ impl Default for Weights {
             pitch_prior_sd: 15f64.to_radians(),
             head_direction: (-42f64).to_radians(),
             head_direction_sd: 12f64.to_radians(),
-            neck_evenness_sd: 10f64.to_radians(),
+            neck_evenness_sd: 20f64.to_radians(),
             slide_prior_sd: 0.03,
             log_length_sd: 0.10,
             log_scale_sd: 0.2,
