@@ -11,7 +11,8 @@ use crate::stride::{Contact, Stride};
 /// A gait between two neighbouring speeds of the database.
 ///
 /// Neighbours are a mile per hour apart and made from one capture, so that their mean keeps a standing hoof within 4 mm of its print
-/// and 10 mm of the ground (at a slow walk; 3 mm elsewhere). A run time that wants it exact solves the legs anew.
+/// and 7 mm of the ground. At a slow walk, where neighbours differ by half, it is 6 and 20 mm; a run time that wants it exact
+/// solves the legs anew.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedBlend<'a> {
     /// The stride at the speed below or at the wanted one.
@@ -117,6 +118,7 @@ mod tests {
     fn a_standing_hoof_stands_between_whole_miles_per_hour_too() {
         let (database, reference) = (Database::embedded(), Skeleton::reference());
         for (gait, [low, high]) in gaits() {
+            let [slide_m, height_m] = if gait == Gait::Walk { [6e-3, 20e-3] } else { [4e-3, 7e-3] };
             for k in 0..20 {
                 let blend = database.at_speed(gait, low + (high - low) * (k as f32 + 0.5) / 20.0).unwrap();
                 let skeleton = blend.slower.skeleton(&reference);
@@ -128,9 +130,9 @@ mod tests {
                     let middle = at(0.5);
                     for i in 0..=40 {
                         let toe = at(i as f32 / 40.0);
-                        assert!(toe.y.abs() < 10e-3, "{gait} {limb:?}: {} m from the ground", toe.y);
+                        assert!(toe.y.abs() < height_m, "{gait} {limb:?}: {} m from the ground", toe.y);
                         assert!(
-                            (toe.x - middle.x).abs() < 4e-3,
+                            (toe.x - middle.x).abs() < slide_m,
                             "{gait} {limb:?}: slid {}",
                             toe.x - middle.x
                         );
