@@ -17,6 +17,7 @@ mod keypoint;
 mod line;
 mod manifest;
 mod parallax;
+mod scales;
 mod similarity;
 mod timing;
 mod validation;

@@ -3,12 +3,11 @@
 use muybridge_core::SpeedSource;
 
 use crate::annotation::PanelAnnotation;
-use crate::calibration::{
-    CalibrationError, Context, Disagreement, Estimate, PanelCamera, Scales, withers_px,
-};
+use crate::calibration::{CalibrationError, Context, Disagreement, Estimate, PanelCamera};
 use crate::even_advance::{TRUNK, trunk_places};
 use crate::keypoint::Keypoint;
 use crate::manifest::{Known, Position, TimeSource};
+use crate::scales::{Scales, withers_px};
 use crate::similarity::{LEG_SHARE, SimilarityLaw};
 use crate::validation::SPEEDS_M_S;
 
