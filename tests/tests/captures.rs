@@ -6,9 +6,11 @@ use std::sync::LazyLock;
 
 use muybridge_capture::{ANNOTATION_SCHEMA, Annotation, read_json};
 use muybridge_core::Limb::{self, LF, LH, RF, RH};
-use muybridge_core::{Gait, Side, Skeleton, SpeedSource};
+use muybridge_core::{Gait, Side, Skeleton, SpeedSource, Stride};
 use muybridge_fitting::gait_analysis::ImpliedGait;
+use muybridge_fitting::gait_laws::Evidence;
 use muybridge_fitting::held_out::quantile;
+use muybridge_fitting::motion_database::build_database;
 use muybridge_fitting::pipeline::{PlateFit, fit_plate};
 use muybridge_fitting::repeatability::Repeatability;
 use muybridge_fitting::stride_fit::{PointResidual, rms};
@@ -220,5 +222,23 @@ fn points_are_as_repeatable_as_the_annotation_says() {
             println!("{}: visible {visible}: {measured:.2} px, said {said}", seen.id);
             assert!((measured / said - 1.0).abs() < 0.1, "{}: {measured} px, not {said}", seen.id);
         }
+    }
+}
+
+#[test]
+fn derived_gaits_are_there_until_somebody_annotates_such_a_plate() {
+    let reference = Skeleton::reference();
+    let derived = |fits: &[PlateFit], gait: Gait| -> Vec<String> {
+        let database = build_database(&Evidence { fits, ..Evidence::default() }, &reference);
+        let made_of_another = |stride: &&Stride| stride.id.contains("-of-");
+        database.strides_of(gait).filter(made_of_another).map(|stride| stride.id.clone()).collect()
+    };
+    for gait in [Gait::Amble, Gait::Leap] {
+        let mut fits: Vec<PlateFit> = FITS.iter().filter(|fit| fit.gait() != Gait::Canter).cloned().collect();
+        assert!(!derived(&fits, gait).is_empty(), "{gait}");
+        // Somebody judges the second walk to be one.
+        let walk = fits.iter_mut().find(|fit| fit.id() == "labelled-walk").unwrap();
+        walk.plate.annotation.gait = Some(gait);
+        assert!(derived(&fits, gait).is_empty(), "{gait}");
     }
 }

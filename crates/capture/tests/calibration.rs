@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test's helpers stop at what must not happen, as its tests do")]
 
 use muybridge_capture::{
-    Annotation, BodyPoint, Calibration, Camera, Facing, Keypoint, KeypointState, Keypoints, Known,
-    KnownLength, LegContacts, Manifest, Mark, NearOff, Panel, PanelAnnotation, PanelUse, Parallax, Placed,
-    PlacedBy, Plane, PlateImage, Position, Scale, ScaleSource, StanceLabel, StrideSpan, Time, TimeSource,
-    calibrate,
+    Annotation, BodyPoint, Calibration, Camera, Estimate, Facing, Keypoint, KeypointState, Keypoints, Known,
+    KnownLength, LEG_SHARE, LegContacts, Manifest, Mark, NearOff, Panel, PanelAnnotation, PanelUse, Parallax,
+    Placed, PlacedBy, Plane, PlateImage, Position, Scale, ScaleSource, SimilarityLaw, StanceLabel,
+    StrideSpan, Time, TimeSource, calibrate,
 };
 use muybridge_core::{Gait, Pair, SpeedSource};
 
@@ -276,6 +276,54 @@ fn times_follow_the_distance_covered_an_interval_or_the_stride_time() {
     manifest.calibration.as_mut().unwrap().time.driven_by = TimeSource::StrideTime;
     let (by_stride, _) = times(&manifest);
     assert!((by_stride[4] - 0.44).abs() < 1e-12 && (by_stride[1] - 0.11).abs() < 1e-12);
+}
+
+#[test]
+fn pictures_cut_out_around_the_animal_advance_as_the_hooves_say_and_the_speed_is_inferred() {
+    let truth = Truth { facing: Facing::Left };
+    let mut manifest = truth.manifest();
+    let calibration = manifest.calibration.as_mut().unwrap();
+    calibration.position = Position::EvenAdvance { per_panel_m: None };
+    calibration.time.driven_by = TimeSource::DynamicSimilarity;
+    calibration.scale.driven_by = ScaleSource::WithersHeight;
+    calibration.scale.known_length = None;
+    let mut annotation = truth.annotation();
+    // Each picture is cut out a little elsewhere.
+    for (panel, shift_px) in annotation.panels.iter_mut().zip([3.0, -7.0, 11.0, 0.0, -5.0, 2.0]) {
+        for (keypoint, placed) in panel.keypoints.clone().iter() {
+            let at_px = placed.at_px.map(|[x, y]| [x + shift_px, y]);
+            panel.keypoints.insert(keypoint, Placed { at_px, ..*placed });
+        }
+    }
+    let found = calibrate(&manifest, &annotation).unwrap();
+    // The hoof stands in panels 2 to 4, over which the trunk advances by 0.6 and 0.7 m.
+    let per_panel_m = 0.65;
+    let croup = Keypoint::Body(BodyPoint::Croup);
+    let croup_m = |i: usize| {
+        let place = annotation.panels[i].keypoints.place(croup).unwrap();
+        found.stride[i].world_from_plate(place, 0.0)[0]
+    };
+    for i in 0..found.stride.len() {
+        let gone = croup_m(i) - croup_m(0);
+        assert!((gone - per_panel_m * i as f64).abs() < 1e-6, "panel {}: {gone}", i + 1);
+    }
+    let leg_m = LEG_SHARE * 1.6;
+    let law = SimilarityLaw::of(Gait::Gallop).unwrap();
+    let exact = |value| Estimate { value, sd: 0.0 };
+    let expected = law.speed_m_s(exact(4.0 * per_panel_m / leg_m), exact(leg_m)).value;
+    let speed = found.speed_m_s;
+    assert_eq!(found.speed_source, SpeedSource::Inferred);
+    assert!((speed.value / expected - 1.0).abs() < 1e-6, "{} for {expected}", speed.value);
+    assert!(speed.sd > 0.08 * speed.value, "the law's own spread at least");
+    let intervals: Vec<f64> = found.stride.windows(2).map(|two| two[1].time_s - two[0].time_s).collect();
+    assert!(intervals.iter().all(|s| (s - per_panel_m / expected).abs() < 1e-6), "{intervals:?}");
+
+    annotation.stride.closes_after_panels = None;
+    let error = calibrate(&manifest, &annotation).unwrap_err().to_string();
+    assert!(error.contains("closes_after_panels"), "{error}");
+    annotation.panels.iter_mut().for_each(|panel| panel.contacts.near_fore = StanceLabel::Swing);
+    let error = calibrate(&manifest, &annotation).unwrap_err().to_string();
+    assert!(error.contains("advance"), "{error}");
 }
 
 #[test]
