@@ -46,3 +46,16 @@ fn every_known_deviation_still_occurs() {
     let gone = stale(&found, KNOWN_DEVIATIONS);
     assert!(gone.is_empty(), "these occur no more, take them off the list: {gone:#?}");
 }
+
+#[test]
+fn the_derived_amble_stands_on_one_and_two_feet_in_turn_at_every_speed() {
+    let database = Database::embedded();
+    let ambles: Vec<_> = database.strides_of(Gait::Amble).collect();
+    assert!(!ambles.is_empty());
+    for amble in ambles {
+        let feet = |k: u16| amble.support(f32::from(k) / 1000.0).iter().filter(|down| **down).count();
+        let ones = (0..1000).filter(|k| feet(*k) == 1).count();
+        let twos = (0..1000).filter(|k| feet(*k) == 2).count();
+        assert!(ones > 50 && twos > 50 && ones + twos == 1000, "{}: {ones} and {twos} of 1000", amble.id);
+    }
+}

@@ -30,5 +30,6 @@ pub mod report;
 pub mod stride_curves;
 pub mod stride_fit;
 pub mod synthetic;
+mod track_table;
 pub mod tracked;
 pub mod weights;

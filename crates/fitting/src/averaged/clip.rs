@@ -1,21 +1,17 @@
 //! Reading a clip: a table with `NAME_x`, `NAME_y` and perhaps `NAME_likelihood`, one row a frame.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use muybridge_capture::{BodyPoint, FileError, Hash, hash_file};
 
+use crate::track_table::{quoted, read_bytes, rows};
+
 use super::naming::{Landmark, NAMINGS, Naming};
 
-/// Longest table that is read, bytes: five hundred times the longest known to us.
-const MOST_BYTES: u64 = 32 * 1024 * 1024;
 /// Likelihood from which `DeepLabCut` itself draws a prediction (`pcutoff` of its configuration).
 const TRUSTED_LIKELIHOOD: f64 = 0.6;
 /// Largest coordinate that is believed, px.
 const FARTHEST_PX: f64 = 1e6;
-/// Longest quotation of a bad cell, characters.
-const LONGEST_QUOTE: usize = 40;
 
 /// A clip that cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -117,10 +113,12 @@ impl Clip {
     /// The path and what is wrong with the file there.
     pub fn read(path: &Path) -> Result<Self, TableError> {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let read = || Self::parse(name, hash_file(path)?, &read_bytes(path)?);
         // What is no file is refused before it is hashed.
-        let checked = || if std::fs::metadata(path)?.is_file() { read() } else { Err(not_a_file()) };
-        checked().map_err(|fault| TableError { path: path.to_path_buf(), fault })
+        let read = || {
+            let bytes = read_bytes(path)?.ok_or(TableFault::TooBig)?;
+            Self::parse(name, hash_file(path)?, &bytes)
+        };
+        read().map_err(|fault| TableError { path: path.to_path_buf(), fault })
     }
 
     /// A clip from the bytes of its file.
@@ -128,11 +126,7 @@ impl Clip {
     /// # Errors
     /// What is wrong with them.
     pub fn parse(file: String, sha256: Hash, bytes: &[u8]) -> Result<Self, TableFault> {
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(bytes);
+        let mut reader = rows(bytes);
         let mut rows = reader.records();
         let header = rows.next().ok_or(TableFault::Empty)??;
         let (naming, columns) = columns(&header)?;
@@ -148,7 +142,7 @@ impl Clip {
             }
             let number = frame_number(&row[0]);
             if number.is_none() || last.is_some_and(|last: u64| number != last.checked_add(1)) {
-                return Err(TableFault::Frame { line, cell: short(&row[0]) });
+                return Err(TableFault::Frame { line, cell: quoted(&row[0]) });
             }
             last = number;
             for ((_, track), columns) in tracks.iter_mut().zip(&columns) {
@@ -156,7 +150,7 @@ impl Clip {
                 drop_outs += usize::from(place.is_some() && !trusted);
                 track.push(place.filter(|_| trusted));
             }
-            named_frames[usize::from(frames > 0)] = short(&row[0]);
+            named_frames[usize::from(frames > 0)] = quoted(&row[0]);
             frames += 1;
         }
         if frames == 0 {
@@ -183,16 +177,6 @@ fn poll_from_eye(tracks: &mut [(Landmark, Track)], times: f64) {
         let beyond = |(nose, eye): ([f64; 2], [f64; 2])| [0, 1].map(|i| nose[i] + times * (eye[i] - nose[i]));
         tracks[eye].1[frame] = both.map(beyond);
     }
-}
-
-fn not_a_file() -> TableFault {
-    std::io::Error::other("not a file").into()
-}
-
-fn read_bytes(path: &Path) -> Result<Vec<u8>, TableFault> {
-    let mut bytes = Vec::new();
-    File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MOST_BYTES { Err(TableFault::TooBig) } else { Ok(bytes) }
 }
 
 /// Columns of a point: x, y, and likelihood where there is one.
@@ -249,7 +233,7 @@ fn place(
         }
         match cell.parse::<f64>() {
             Ok(value) if value.abs() <= largest => Ok(Some(value)),
-            _ => Err(TableFault::Number { line, column: column + 1, cell: short(cell) }),
+            _ => Err(TableFault::Number { line, column: column + 1, cell: quoted(cell) }),
         }
     };
     let [x, y] = [number(at[0], FARTHEST_PX)?, number(at[1], FARTHEST_PX)?];
@@ -258,8 +242,4 @@ fn place(
         None => true,
     };
     Ok((x.zip(y).map(|(x, y)| [x, y]), trusted))
-}
-
-fn short(text: &str) -> String {
-    text.chars().take(LONGEST_QUOTE).collect()
 }

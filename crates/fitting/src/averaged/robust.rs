@@ -1,4 +1,6 @@
-//! Medians, quantiles, and straight lines through points some of which lie.
+//! Quantiles, and straight lines through points some of which lie.
+
+pub(super) use crate::tracked::median;
 
 /// Most points of which all pairs are looked at; of more an even selection is.
 const MOST_POINTS: usize = 250;
@@ -11,11 +13,6 @@ pub(super) fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
     let at = share * values.len().checked_sub(1)? as f64;
     let (low, high) = (values[at.floor() as usize], values[at.ceil() as usize]);
     Some(low + (high - low) * at.fract())
-}
-
-/// The median; none of nothing.
-pub(super) fn median(values: Vec<f64>) -> Option<f64> {
-    quantile(values, 0.5)
 }
 
 /// Standard deviation of normal errors with the same median distance from zero.

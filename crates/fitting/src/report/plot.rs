@@ -260,7 +260,7 @@ pub(super) fn svg(
     // The backend's own opening tag fixes the size in px; this one lets the picture follow the page.
     let content = drawn.split_once('>').map_or("", |(_, content)| content);
     format!(
-        "<svg viewBox=\"0 0 {} {}\" style=\"max-width:{width_px}px\" role=\"img\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" style=\"max-width:{width_px}px\" role=\"img\" \
          aria-label=\"{title}\"><title>{title}</title>{content}",
         size[0],
         size[1],

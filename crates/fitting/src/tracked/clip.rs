@@ -6,18 +6,14 @@
 #[cfg(test)]
 mod tests;
 
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use muybridge_core::Limb;
 
-/// Most bytes of a clip: an hour at 15 frames/s is 22 MB.
-const MOST_BYTES: u64 = 32 * 1024 * 1024;
+use crate::track_table::{quoted, read_bytes, rows};
+
 /// Columns of a point.
 const COORDINATES: [&str; 3] = ["x", "y", "likelihood"];
-/// Longest piece of a damaged file that a message repeats, characters.
-const LONGEST_QUOTE: usize = 40;
 
 /// The points that the tracker knows, each at its own index.
 pub const POINTS: [&str; 16] = [
@@ -140,9 +136,8 @@ impl Clip {
     /// The path and what is wrong with the file there.
     pub fn read(path: &Path) -> Result<Self, ClipError> {
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        read_bytes(path)
-            .and_then(|bytes| Self::parse(name, &bytes))
-            .map_err(|fault| ClipError { path: path.to_path_buf(), fault })
+        let read = || Self::parse(name, &read_bytes(path)?.ok_or(ClipFault::TooBig)?);
+        read().map_err(|fault| ClipError { path: path.to_path_buf(), fault })
     }
 
     /// A clip from the bytes of its file.
@@ -150,11 +145,7 @@ impl Clip {
     /// # Errors
     /// What is wrong with them.
     pub fn parse(name: String, bytes: &[u8]) -> Result<Self, ClipFault> {
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(bytes);
+        let mut reader = rows(bytes);
         let mut rows = reader.records();
         let columns = header(&mut rows)?;
         let mut tracks = vec![Vec::new(); POINTS.len()];
@@ -166,7 +157,7 @@ impl Clip {
                 return Err(ClipFault::Cells { line, found: row.len(), expected });
             }
             if row[0].parse::<f64>().ok() != Some(frame as f64) {
-                return Err(ClipFault::Frame { line, cell: short(&row[0]), expected: frame });
+                return Err(ClipFault::Frame { line, cell: quoted(&row[0]), expected: frame });
             }
             for (track, columns) in tracks.iter_mut().zip(&columns) {
                 track.push(point(&row, line, *columns)?);
@@ -204,16 +195,6 @@ impl Clip {
     }
 }
 
-fn read_bytes(path: &Path) -> Result<Vec<u8>, ClipFault> {
-    // Pipes and devices could be waited for, or read, for ever.
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(std::io::Error::other("not a file").into());
-    }
-    let mut bytes = Vec::new();
-    File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MOST_BYTES { Err(ClipFault::TooBig) } else { Ok(bytes) }
-}
-
 /// The columns of x, y and likelihood of every point.
 fn header(
     rows: &mut impl Iterator<Item = Result<csv::StringRecord, csv::Error>>,
@@ -229,7 +210,7 @@ fn header(
         return Err(ClipFault::Header);
     }
     if let Some(unknown) = points.iter().skip(1).find(|name| !POINTS.contains(name)) {
-        return Err(ClipFault::UnknownPoint(short(unknown)));
+        return Err(ClipFault::UnknownPoint(quoted(unknown)));
     }
     let column = |point: &str, coordinate: &str| {
         let mut found = (1..points.len()).filter(|&i| &points[i] == point && &coordinates[i] == coordinate);
@@ -257,7 +238,7 @@ fn point(row: &csv::StringRecord, line: u64, columns: [usize; 3]) -> Result<Trac
         }
         match cell.parse::<f64>() {
             Ok(value) if value.is_finite() => *number = Some(value),
-            _ => return Err(ClipFault::Number { line, column: column + 1, cell: short(cell) }),
+            _ => return Err(ClipFault::Number { line, column: column + 1, cell: quoted(cell) }),
         }
     }
     let likelihood = match numbers {
@@ -265,12 +246,8 @@ fn point(row: &csv::StringRecord, line: u64, columns: [usize; 3]) -> Result<Trac
         _ => 0.0,
     };
     if !(0.0..=1.0).contains(&likelihood) {
-        let cell = short(&row[columns[2]]);
+        let cell = quoted(&row[columns[2]]);
         return Err(ClipFault::Number { line, column: columns[2] + 1, cell });
     }
     Ok(TrackedPoint { at_px: [numbers[0].unwrap_or(0.0), numbers[1].unwrap_or(0.0)], likelihood })
-}
-
-fn short(text: &str) -> String {
-    text.chars().take(LONGEST_QUOTE).collect()
 }

@@ -19,7 +19,7 @@ const CANTER_BEATS: [f64; 2] = [0.1, 0.5];
 const GALLOP_BEATS: [f64; 2] = [0.04, 0.55];
 /// Rounding of instants: a gap in support shorter than this share of the stride is none.
 const MEETING: f64 = 0.01;
-/// An amble may have three feet down for this share of the stride: one panel of twelve.
+/// A captured amble may have three feet down for this share of the stride, one panel of twelve; a derived one has none.
 const AMBLE_OVERLAP: f64 = 0.1;
 /// An amble has one foot and two feet down for at least this share of the stride each.
 const AMBLE_ALTERNATION: f64 = 0.02;

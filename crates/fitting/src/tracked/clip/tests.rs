@@ -1,6 +1,7 @@
 //! Good and damaged clips.
 
 use super::*;
+use crate::track_table::MOST_BYTES;
 
 /// A clip of two frames in which every number of a point differs.
 fn good() -> String {
@@ -73,7 +74,7 @@ fn files_that_are_no_files_are_errors_with_their_path() {
 #[test]
 fn a_file_that_is_too_long_is_not_read() {
     let path = std::env::temp_dir().join(format!("muybridge-clip-{}.csv", std::process::id()));
-    File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
+    std::fs::File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
     let error = Clip::read(&path).unwrap_err();
     std::fs::remove_file(&path).unwrap();
     assert!(matches!(error.fault, ClipFault::TooBig));
