@@ -14,6 +14,7 @@
 //! It depends on glam and serde, and on `serde_json` only to parse the two data files compiled into it.
 
 mod database;
+mod foot_phase;
 mod gait;
 mod law;
 mod limb;
@@ -21,11 +22,15 @@ mod packed;
 mod pose;
 mod provenance;
 mod random;
+mod ride;
 mod skeleton;
 mod speed_blend;
 mod stride;
 
 pub use database::{DATABASE_SCHEMA, DataError, Database};
+pub use foot_phase::{
+    FootPhase, FootPhaseTest, LANDED_FETLOCK_DEG, LEAST_HEIGHT_SHARE, LIFTED_FETLOCK_DEG, toe_ahead_m,
+};
 pub use gait::{Gait, Lead};
 pub use law::{ContactLaw, Interval, LawKind, MPS_PER_MPH, PowerLaw};
 pub use limb::{Limb, Pair, Side};
@@ -33,8 +38,13 @@ pub use packed::CURVE_STEP;
 pub use pose::{Joints, Pose};
 pub use provenance::{Provenance, SpeedSource};
 pub use random::Random;
+pub use ride::{
+    ChangeReadout, Command, FlatGround, Ground, Horse, HorseState, Leap, Readout, Repertoire, Surface,
+    TURN_STEP_RAD, Turn,
+};
 pub use skeleton::{
-    BONE_COUNT, Bone, FetlockCoupling, ReciprocalCoupling, SKELETON_SCHEMA, Skeleton, SwingFetlock, bone,
+    BODY_BONE_COUNT, BONE_COUNT, Bone, FetlockCoupling, ReciprocalCoupling, SKELETON_SCHEMA, Skeleton,
+    SwingFetlock, bone,
 };
 pub use speed_blend::SpeedBlend;
 pub use stride::{CHANNEL_COUNT, CURVE_SAMPLES, Contact, Curves, Stride};

@@ -4,10 +4,13 @@ use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::limb::{Limb, Pair, Side};
-use crate::skeleton::{BONE_COUNT, Skeleton};
+use crate::skeleton::{BODY_BONE_COUNT, BONE_COUNT, Skeleton, bone};
 
 /// Root and joint angles of one moment.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+///
+/// A horse on a straight line moves in planes along its track: bends alone pose it, as in a fitted plate. Turning, uneven ground
+/// and feet set aside need the lateral angles as well; they are zero in every stride of the database.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     /// Top of the croup in world space, metres.
     pub root_in_world: Vec3,
@@ -17,6 +20,18 @@ pub struct Pose {
     pub bends_rad: [f32; BONE_COUNT],
     /// How far the left and right scapula are slid towards the head along the rib cage, metres.
     pub scapula_slides_m: [f32; 2],
+    /// Turn of each bone of the body against the one before it, about the root's Y axis, to the left positive, radians.
+    pub lateral_bends_rad: [f32; BODY_BONE_COUNT],
+    /// Turn of each leg below shoulder or hip about the root's Y axis, to the left positive, radians.
+    pub limb_turns_rad: [f32; 4],
+    /// Swing of each leg sideways about the shoulder or hip, after its turn; the hoof to the left positive, radians.
+    pub abductions_rad: [f32; 4],
+}
+
+/// Ends of every bone in the root's frame.
+struct Places {
+    bases: [Vec3; BONE_COUNT],
+    tips: [Vec3; BONE_COUNT],
 }
 
 /// World positions of every joint of a pose.
@@ -46,45 +61,82 @@ impl Pose {
         for (bend, bone) in bends_rad.iter_mut().zip(&skeleton.bones) {
             *bend = bone.rest_bend_rad;
         }
-        Self {
-            root_in_world: Vec3::new(0.0, skeleton.croup_height_m, 0.0),
-            world_from_root: Quat::IDENTITY,
-            bends_rad,
-            scapula_slides_m: [0.0; 2],
-        }
+        let root_in_world = Vec3::new(0.0, skeleton.croup_height_m, 0.0);
+        Self { root_in_world, world_from_root: Quat::IDENTITY, bends_rad, ..Self::default() }
     }
 
-    /// Forward kinematics. Bends turn about the root's Z axis; a bone's tip lies at its own distance from the
-    /// median plane, so that bone lengths are the same in every pose.
+    /// Forward kinematics. Bends turn about the Z axis of the body bone they hang on; in a leg that is neither turned nor abducted
+    /// a bone's tip lies at its own distance from the median plane, so that bone lengths are the same in every pose.
     pub fn joints(&self, skeleton: &Skeleton) -> Joints {
-        let mut angles = [0.0f32; BONE_COUNT];
-        let mut bases = [Vec3::ZERO; BONE_COUNT];
-        let mut tips = [Vec3::ZERO; BONE_COUNT];
-        for (i, bone) in skeleton.bones.iter().enumerate() {
-            let parent_angle = bone.parent.map_or(0.0, |parent| angles[parent]);
-            angles[i] = parent_angle + self.bends_rad[i];
-            bases[i] = bone.parent.map_or(Vec3::ZERO, |parent| tips[parent]);
-            if i == Limb::LF.first_bone() || i == Limb::RF.first_bone() {
-                bases[i] += self.scapula_offset(skeleton, parent_angle, i);
-            }
-            let (sin, cos) = angles[i].sin_cos();
-            tips[i] = (bases[i] + bone.length_m * Vec3::new(cos, sin, 0.0)).with_z(bone.lateral_m);
+        let mut places = Places { bases: [Vec3::ZERO; BONE_COUNT], tips: [Vec3::ZERO; BONE_COUNT] };
+        let [spine_angle, spine_turn] = self.place_body(skeleton, &mut places);
+        for limb in Limb::ALL {
+            let hangs_on = if limb.pair() == Pair::Fore {
+                let withers = places.tips[bone::SPINE_LAST];
+                let attachment = self.scapula_offset(skeleton, spine_angle, limb);
+                (spine_angle, spine_turn, withers + Quat::from_rotation_y(spine_turn) * attachment)
+            } else {
+                (0.0, 0.0, Vec3::ZERO)
+            };
+            self.place_limb(skeleton, limb, hangs_on, &mut places);
         }
         let world = |point: Vec3| self.root_in_world + self.world_from_root * point;
         let [dock_x, dock_y] = skeleton.dock_from_croup_m;
         Joints {
             root: self.root_in_world,
             dock: world(Vec3::new(dock_x, dock_y, 0.0)),
-            bases: bases.map(world),
-            tips: tips.map(world),
+            bases: places.bases.map(world),
+            tips: places.tips.map(world),
         }
     }
 
-    /// From the withers to where the scapula hangs, in the root's frame.
-    fn scapula_offset(&self, skeleton: &Skeleton, spine_angle: f32, scapula: usize) -> Vec3 {
-        let side = if scapula == Limb::LF.first_bone() { 0 } else { 1 };
+    /// Places spine, neck and head; returns the last spine bone's angle and turn, radians.
+    fn place_body(&self, skeleton: &Skeleton, places: &mut Places) -> [f32; 2] {
+        let (mut angle, mut turn, mut at) = (0.0, 0.0, Vec3::ZERO);
+        let mut withers = [0.0; 2];
+        for (i, bone) in skeleton.bones[..BODY_BONE_COUNT].iter().enumerate() {
+            angle += self.bends_rad[i];
+            turn += self.lateral_bends_rad[i];
+            places.bases[i] = at;
+            at += bone.length_m * (Quat::from_rotation_y(turn) * Vec3::new(angle.cos(), angle.sin(), 0.0));
+            places.tips[i] = at;
+            if i == bone::SPINE_LAST {
+                withers = [angle, turn];
+            }
+        }
+        withers
+    }
+
+    /// Places a leg's five bones from the angle, the turn and the place of what it hangs on.
+    fn place_limb(
+        &self,
+        skeleton: &Skeleton,
+        limb: Limb,
+        (mut angle, turn, base): (f32, f32, Vec3),
+        places: &mut Places,
+    ) {
+        let first = limb.first_bone();
+        let root_from_girdle = Quat::from_rotation_y(turn);
+        let root_from_leg = root_from_girdle
+            * Quat::from_rotation_y(self.limb_turns_rad[limb.index()])
+            * Quat::from_rotation_x(self.abductions_rad[limb.index()]);
+        let (mut at, mut lateral_m) = (base, 0.0);
+        for i in first..=limb.hoof_bone() {
+            let bone = &skeleton.bones[i];
+            angle += self.bends_rad[i];
+            places.bases[i] = at;
+            let (sin, cos) = angle.sin_cos();
+            let along = Vec3::new(bone.length_m * cos, bone.length_m * sin, bone.lateral_m - lateral_m);
+            at += if i == first { root_from_girdle * along } else { root_from_leg * along };
+            lateral_m = bone.lateral_m;
+            places.tips[i] = at;
+        }
+    }
+
+    /// From the withers to where the scapula hangs, in the plane of the last spine bone.
+    fn scapula_offset(&self, skeleton: &Skeleton, spine_angle: f32, limb: Limb) -> Vec3 {
         let [along, up] = skeleton.scapula_attachment_from_withers_m;
-        let along = along + self.scapula_slides_m[side];
+        let along = along + self.scapula_slides_m[limb.index()];
         let (sin, cos) = spine_angle.sin_cos();
         Vec3::new(cos * along - sin * up, sin * along + cos * up, 0.0)
     }
@@ -113,6 +165,10 @@ impl Pose {
             }
         }
         mirrored.scapula_slides_m.swap(0, 1);
+        mirrored.lateral_bends_rad = self.lateral_bends_rad.map(std::ops::Neg::neg);
+        for side_angles in [&mut mirrored.limb_turns_rad, &mut mirrored.abductions_rad] {
+            *side_angles = [1, 0, 3, 2].map(|twin: usize| -side_angles[twin]);
+        }
         mirrored.root_in_world.z = -self.root_in_world.z;
         let q = self.world_from_root;
         mirrored.world_from_root = Quat::from_xyzw(-q.x, -q.y, q.z, q.w);
@@ -130,6 +186,9 @@ mod tests {
             *bend += 0.1 * ((i * 7) as f32).sin();
         }
         pose.scapula_slides_m = [0.03, -0.02];
+        pose.lateral_bends_rad = [0.03, 0.02, 0.05, -0.02, 0.1, 0.1, -0.04, 0.2];
+        pose.limb_turns_rad = [0.1, -0.2, 0.0, 0.15];
+        pose.abductions_rad = [0.1, 0.2, -0.15, 0.05];
         pose.world_from_root = Quat::from_rotation_y(0.4) * Quat::from_rotation_z(0.1);
         pose
     }

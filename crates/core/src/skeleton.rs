@@ -9,6 +9,8 @@ use crate::limb::{Limb, Side};
 pub const SKELETON_SCHEMA: u32 = 1;
 /// Number of bones.
 pub const BONE_COUNT: usize = 28;
+/// Number of bones of spine, neck and head; they come first.
+pub const BODY_BONE_COUNT: usize = bone::LIMBS;
 
 /// Bone indices. The legs follow the body in the order of [`Limb::ALL`], five bones each, root to hoof.
 pub mod bone {

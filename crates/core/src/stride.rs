@@ -134,6 +134,7 @@ impl Stride {
             world_from_root: Quat::from_rotation_z(at(&self.curves.pitch_rad)),
             bends_rad,
             scapula_slides_m,
+            ..Pose::default()
         }
     }
 

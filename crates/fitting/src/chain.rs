@@ -326,6 +326,7 @@ mod tests {
             world_from_root: glam::Quat::from_rotation_z(pose[PITCH] as f32),
             bends_rad: std::array::from_fn(|i| pose[BENDS + i] as f32),
             scapula_slides_m: [pose[SLIDES] as f32, pose[SLIDES + 1] as f32],
+            ..Pose::default()
         };
         let joints = run_time.joints(&skeleton);
         for i in 0..BONE_COUNT {
