@@ -1,15 +1,4 @@
 //! The paper's test of whether a hoof is down, from the pose alone (Huang 2012, section 3.4.1).
-//!
-//! Readings taken where the paper leaves something open:
-//!
-//! - *Fetlock Joint Angle* is the one in front, between cannon and pastern on the dorsal side: a loaded pastern sinks and makes it
-//!   less than 180 degrees, and it grows past 180 as the pastern folds back in the air. "Beyond" is less than the first thresholds
-//!   and more than the second. [`Pose::fetlock_angle_rad`] is the angle behind, so this one is a full turn less that.
-//! - *Hip/Shoulder Position* is the upper end of femur or humerus, *Foot Position* the toe; in front and behind are along the root's
-//!   heading.
-//! - *Too close in height*: the paper gives no number; see [`LEAST_HEIGHT_SHARE`].
-//! - *Striking position*: saved "when we build a motion", in place, so that it is seen from the hip or shoulder. Against a print
-//!   in the world every hoof of a horse that goes forward is behind the place it is about to strike, and the test would say nothing.
 
 use glam::Vec3;
 
@@ -56,6 +45,17 @@ impl FootPhase {
 }
 
 /// The test for one skeleton.
+///
+/// Readings taken where the paper leaves something open:
+///
+/// - *Fetlock Joint Angle* is the one in front, between cannon and pastern on the dorsal side: a loaded pastern sinks and makes it
+///   less than 180 degrees, and it grows past 180 as the pastern folds back in the air. "Beyond" is less than the first thresholds
+///   and more than the second. [`Pose::fetlock_angle_rad`] is the angle behind, so this one is a full turn less that.
+/// - *Hip/Shoulder Position* is the upper end of femur or humerus, *Foot Position* the toe; in front and behind are along the root's
+///   heading.
+/// - *Too close in height*: the paper gives no number; see [`LEAST_HEIGHT_SHARE`].
+/// - *Striking position*: saved "when we build a motion", in place, so that it is seen from the hip or shoulder. Against a print
+///   in the world every hoof of a horse that goes forward is behind the place it is about to strike, and the test would say nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootPhaseTest {
     least_heights_m: [f32; 4],

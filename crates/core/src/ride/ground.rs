@@ -5,6 +5,9 @@ use glam::Vec3;
 /// Distance over which the slope of a height function is measured, metres: half a hoof.
 const SLOPE_STEP_M: f32 = 0.05;
 
+/// Steepest ground a hoof lies flat on, rad: 35 degrees.
+const STEEPEST_RAD: f32 = 0.6;
+
 /// The ground at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
@@ -12,6 +15,16 @@ pub struct Surface {
     pub height_m: f32,
     /// Unit normal, pointing up.
     pub normal: Vec3,
+}
+
+impl Surface {
+    /// Angle at which the surface rises along a heading (rad about Y, left positive), rad; zero where it is no surface.
+    pub(super) fn rise_rad(&self, heading_rad: f64) -> f32 {
+        let (sin, cos) = heading_rad.sin_cos();
+        let along = -(self.normal.x * cos as f32 - self.normal.z * sin as f32);
+        let rise = along.atan2(self.normal.y);
+        if rise.is_finite() { rise.clamp(-STEEPEST_RAD, STEEPEST_RAD) } else { 0.0 }
+    }
 }
 
 /// Any ground. A function of x and z (metres) that returns a height is one, its slope measured over a hoof's width.

@@ -9,11 +9,12 @@ use super::feet::Foot;
 use super::gait_choice::Choice;
 use super::ground::Ground;
 use super::leaping::Leaping;
+use super::mixture::Timing;
 use super::readout::{ChangeReadout, Readout};
 use super::repertoire::{Repertoire, Way};
 use super::state::HorseState;
 use super::terrain::{Terrain, height_m};
-use super::track::{Track, beside};
+use super::track::{Facing, Track};
 use super::warp::Warp;
 use crate::database::{DataError, Database};
 use crate::gait::Gait;
@@ -30,8 +31,8 @@ const LONGEST_PART_S: f32 = 1.0 / 30.0;
 /// A horse that is driven step by step.
 #[derive(Clone, Debug)]
 pub struct Horse {
-    pub(super) repertoire: Arc<Repertoire>,
-    pub(super) state: HorseState,
+    repertoire: Arc<Repertoire>,
+    state: HorseState,
 }
 
 impl Horse {
@@ -60,12 +61,14 @@ impl Horse {
             wished_m_s: repertoire.playable_m_s(Gait::Walk)[0],
             rate_hz: 0.0,
             speed_m_s: 0.0,
+            timing: Timing::default(),
+            gain_m: 0.0,
             is_halting: true,
             is_stepping: false,
             has_left: [false; 4],
             stillness: 1.0,
             drawn_m: [0.0; 2],
-            lowered_m: 0.0,
+            pull_m: glam::Vec3::ZERO,
         };
         let mut horse = Self { repertoire, state };
         horse.place(DVec3::ZERO, 0.0, &super::FlatGround);
@@ -83,17 +86,17 @@ impl Horse {
         state.warp = Warp::steady(repertoire, Way::of(Gait::Walk));
         (state.choice, state.leaping) = (Choice::of(Gait::Walk), Leaping::default());
         (state.stillness, state.rate_hz, state.speed_m_s) = (1.0, 0.0, 0.0);
-        (state.drawn_m, state.lowered_m) = ([0.0; 2], 0.0);
+        (state.drawn_m, state.pull_m, state.gain_m) = ([0.0; 2], glam::Vec3::ZERO, 0.0);
         state.wished_m_s = repertoire.playable_m_s(Gait::Walk)[0];
         for limb in 0..4 {
             let lateral = repertoire.rig.legs[limb].toe_lateral_m;
             let ahead_right = glam::Vec2::new(repertoire.standing_toes_m[limb], lateral);
-            let foot = beside(state.track.at_m, heading_rad, ahead_right);
+            let foot = Facing::new(heading_rad).beside(state.track.at_m, ahead_right);
             let height = height_m(ground, foot).unwrap_or(at.y as f32);
             let print = DVec3::new(foot.x, f64::from(height), foot.y);
             state.feet[limb] = Foot::standing(print, heading_rad);
         }
-        self.pose_now(ground, 0.0);
+        state.pose_now(repertoire, ground, 0.0);
     }
 
     /// Moves the horse on by a time in seconds and returns its pose. A time that is negative or no number counts as zero, and nothing
@@ -103,7 +106,7 @@ impl Horse {
         let dt_s = if dt_s > 0.0 { dt_s.min(LONGEST_S) } else { 0.0 };
         let parts = (dt_s / LONGEST_PART_S).ceil();
         for _ in 0..parts as u32 {
-            self.advance(command, dt_s / parts, ground);
+            self.state.advance(&self.repertoire, command, dt_s / parts, ground);
         }
         &self.state.pose
     }
@@ -136,24 +139,23 @@ impl Horse {
     /// What it is doing.
     pub fn readout(&self) -> Readout {
         let (state, repertoire) = (&self.state, &*self.repertoire);
-        let timing = self.mixture().timing;
-        let is_moving = !self.is_at_rest();
         let change = state.warp.change().map(|(from, share)| ChangeReadout { from: from.gait, share });
         Readout {
             gait: state.warp.to.gait,
             lead: repertoire.lead(state.warp.to),
-            is_standing: state.stillness > 0.0 && self.is_halting_or_still(),
+            is_standing: state.stillness > 0.0 && state.is_halting,
             change,
             speed_m_s: state.speed_m_s,
             heading_rad: state.track.heading_rad,
             turn_rate_rad_s: state.track.turn_rate_rad_s,
-            stride_time_s: if is_moving { 1.0 / state.rate_hz } else { f32::INFINITY },
+            stride_time_s: 1.0 / state.rate_hz,
             strides: state.warp.clock,
+            phase: state.warp.phase(),
             leg_cycles: state.warp.cycles(),
-            duty_factors: timing.duties,
+            duty_factors: state.timing.duties,
             on_ground: state.feet.map(|foot| foot.is_planted),
             prints: state.feet.map(|foot| foot.print),
-            lowered_m: state.lowered_m,
+            lowered_m: -state.pull_m.y,
         }
     }
 }

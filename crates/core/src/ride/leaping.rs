@@ -75,21 +75,28 @@ impl Leaping {
 
     /// Whether gait and speed are the leap's own business now.
     pub(super) fn is_under_way(&self) -> bool {
+        matches!(self.stage, Stage::Gathering | Stage::Leaping | Stage::Landing)
+    }
+
+    /// Whether the feet go by the leap's own time.
+    pub(super) fn leads_feet(&self) -> bool {
         matches!(self.stage, Stage::Gathering | Stage::Leaping)
     }
 
-    fn phase(warp: &Warp) -> f32 {
-        warp.clock.rem_euclid(1.0) as f32
+    /// The gait to land into: the one leapt from, or the gallop where it is too slow for the leap's speed.
+    fn landing_gait(&self, repertoire: &Repertoire) -> Gait {
+        let approach = repertoire.leap.approach;
+        if self.speed_m_s > repertoire.playable_m_s(approach)[1] { Gait::Gallop } else { approach }
     }
 
-    /// Goes from stage to stage; `next` is the gait to go on in.
-    pub(super) fn advance(&mut self, repertoire: &Repertoire, warp: &mut Warp, wished_m_s: f32, next: Way) {
+    /// Goes from stage to stage. `wished_m_s` is the speed the gaits are played at: the leap hands its own on when it lands.
+    pub(super) fn advance(&mut self, repertoire: &Repertoire, warp: &mut Warp, wished_m_s: &mut f32) {
         let leap = &repertoire.leap;
         match self.stage {
             Stage::None => {}
             Stage::Approach => {
                 let [slow, fast] = repertoire.playable_m_s(leap.approach);
-                let is_there = (wished_m_s - self.speed_m_s.clamp(slow, fast)).abs() < AT_SPEED_M_S;
+                let is_there = (*wished_m_s - self.speed_m_s.clamp(slow, fast)).abs() < AT_SPEED_M_S;
                 if is_there && warp.is_steady() && warp.to.gait == leap.approach {
                     let way = Way { gait: Gait::Leap, is_mirrored: warp.to.is_mirrored };
                     warp.begin_to_phase(repertoire, way, [GATHERING_STRIDES, MIXED_STRIDES], 0.0);
@@ -103,9 +110,15 @@ impl Leaping {
             }
             Stage::Leaping => {
                 if self.flown_s >= self.flight_s
-                    && Self::phase(warp) >= leap.landing + LANDED * (1.0 - leap.landing)
+                    && warp.phase() >= leap.landing + LANDED * (1.0 - leap.landing)
                 {
                     self.stage = Stage::Landing;
+                    let gait = self.landing_gait(repertoire);
+                    let next = match repertoire.lead(Way::of(gait)) {
+                        Some(_) => Way { gait, is_mirrored: warp.to.is_mirrored },
+                        None => Way::of(gait),
+                    };
+                    *wished_m_s = self.speed_m_s;
                     warp.begin_at_once(repertoire, next, GOING_ON_STRIDES, MIXED_STRIDES);
                 }
             }
@@ -123,7 +136,7 @@ impl Leaping {
 
     /// Whether the horse flies.
     pub(super) fn flies(&self, repertoire: &Repertoire, warp: &Warp) -> bool {
-        self.is_flying(&repertoire.leap, Self::phase(warp))
+        self.is_flying(&repertoire.leap, warp.phase())
     }
 
     /// Phase of the flight at a share of its time: it leaves and arrives at the rate the feet have on the ground.
@@ -136,7 +149,7 @@ impl Leaping {
 
     /// The clock's rate with the flight taken to its own time, strides per second.
     pub(super) fn rate_hz(&mut self, repertoire: &Repertoire, warp: &Warp, rate_hz: f32, dt_s: f32) -> f32 {
-        let (leap, phase) = (&repertoire.leap, Self::phase(warp));
+        let (leap, phase) = (&repertoire.leap, warp.phase());
         if !self.is_flying(leap, phase) {
             return rate_hz;
         }
@@ -148,7 +161,7 @@ impl Leaping {
 
     /// Time to a number of strides from now, s, over the flight if it lies between.
     pub(super) fn time_s(&self, repertoire: &Repertoire, warp: &Warp, strides: f32, rate_hz: f32) -> f32 {
-        let (leap, phase) = (&repertoire.leap, Self::phase(warp));
+        let (leap, phase) = (&repertoire.leap, warp.phase());
         let to = phase + strides;
         let is_ahead = self.stage == Stage::Leaping && self.flown_s < self.flight_s && to >= leap.landing;
         if !is_ahead {
@@ -158,10 +171,21 @@ impl Leaping {
         before + self.flight_s - self.flown_s + (to - leap.landing) / rate_hz
     }
 
+    /// How much higher the body is than it will be at the landing, metres; zero but in flight.
+    pub(super) fn falls_m(&self, repertoire: &Repertoire, warp: &Warp) -> f32 {
+        let leap = &repertoire.leap;
+        if !self.is_flying(leap, warp.phase()) {
+            return 0.0;
+        }
+        let share = self.flown_s / self.flight_s;
+        let [from_m, to_m] = leap.heights_m;
+        (from_m - to_m) * (1.0 - share) + 4.0 * self.height_m * share * (1.0 - share)
+    }
+
     /// What the leap adds to the height its stride has, metres: the flight's own arc, and the crouch before and after it in which
     /// the body gains and loses the speed it flies up and down with.
     pub(super) fn added_m(&self, repertoire: &Repertoire, warp: &Warp, rate_hz: f32) -> f32 {
-        let (leap, phase) = (&repertoire.leap, Self::phase(warp));
+        let (leap, phase) = (&repertoire.leap, warp.phase());
         let [from_m, to_m] = leap.heights_m;
         let climb = to_m - from_m;
         let arc = |height_m: f32, time_s: f32, sign: f32| (sign * 4.0 * height_m + climb) / time_s;

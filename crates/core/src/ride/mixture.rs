@@ -1,5 +1,7 @@
 //! What a horse does at a moment: ways of moving, each at its speed, mixed by weights that add up to one.
 
+use serde::{Deserialize, Serialize};
+
 use super::clip::{BODY_CHANNELS, BodyRow, LEG_CHANNELS, LegRow};
 use super::repertoire::{Paced, Repertoire, Way};
 use crate::gait::Gait;
@@ -11,7 +13,7 @@ pub(super) type Weights = [f32; Way::COUNT];
 const LEAST_WEIGHT: f32 = 1e-6;
 
 /// The timing of a mixture: how its legs stand and swing, and how fast it goes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Timing {
     /// Strides per second.
     pub(super) rate_hz: f32,
@@ -26,6 +28,11 @@ pub(super) struct Timing {
 }
 
 impl Timing {
+    /// Length of a stride, metres.
+    pub(super) fn stride_m(&self) -> f32 {
+        self.speed_m_s / self.rate_hz
+    }
+
     /// The same with steps of a share of their length: half of what is lacking is made up by their rate, the rest costs speed.
     pub(super) fn shortened(mut self, share: f32) -> Self {
         self.steps_m = self.steps_m.map(|step_m| step_m * share);
@@ -118,8 +125,7 @@ impl<'a> Mixture<'a> {
         steps: f32,
     ) -> Self {
         let mut ways = [None; MOST_WAYS];
-        let mut timing =
-            Timing { rate_hz: 0.0, speed_m_s: 0.0, duties: [0.0; 4], steps_m: [0.0; 4], prints_m: [0.0; 4] };
+        let mut timing = Timing::default();
         let (mut n, mut length_m) = (0, 0.0);
         for (index, &weight) in weights.iter().enumerate() {
             if weight < LEAST_WEIGHT || n == MOST_WAYS {

@@ -1,8 +1,11 @@
 //! The horse in real time.
 
+mod bearing;
 mod clip;
 mod command;
+mod deciding;
 mod feet;
+mod footing;
 mod gait_choice;
 mod ground;
 mod horse;

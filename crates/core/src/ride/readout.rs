@@ -33,8 +33,11 @@ pub struct Readout {
     pub turn_rate_rad_s: f32,
     /// Duration of a stride as it goes now, s; infinite when it stands.
     pub stride_time_s: f32,
-    /// Strides gone since it was made; the fraction is the phase.
+    /// Strides gone since it was placed.
     pub strides: f64,
+    /// Phase of the stride, `[0, 1)`: zero where the left hind strikes (the right one on the mirrored lead). Exact when no change is
+    /// under way; during one the legs have phases of their own.
+    pub phase: f32,
     /// How far each leg is in its own cycle from strike to strike, `[0, 1)`.
     pub leg_cycles: [f32; 4],
     /// Share of that cycle in which the hoof is down.

@@ -8,6 +8,8 @@ use crate::skeleton::{BONE_COUNT, Skeleton, bone};
 
 /// A toe this near its place is there, metres: a tenth of what may slide.
 const THERE_M: f32 = 1e-5;
+/// A loaded leg that misses by more than this is solved again with its joints unlocked, metres.
+const NEAR_M: f32 = 1.5e-5;
 /// Steps of the solution; three do for a foot that is nearly in place, more when a joint runs into its limit.
 const STEPS: usize = 12;
 /// Greatest damping, m/rad: calm at full stretch, small against a leg of a metre.
@@ -15,7 +17,7 @@ const DAMPING_M: f32 = 0.02;
 /// Variance of the carpus of a loaded foreleg against the other joints: it is locked straight.
 const LOCKED: f32 = 0.01;
 /// Variance of a fetlock in the air against the other joints: nothing but the tendons moves it.
-const PASSIVE: f32 = 0.3;
+const PASSIVE: f32 = 0.1;
 /// Usual deviation of a stifle, rad: what the skeleton's deviation of the hock from its coupling is measured by.
 const STIFLE_SD_RAD: f32 = 0.35;
 /// How far solved bends keep from the skeleton's limits, rad: rounding must not carry them over.
@@ -23,6 +25,10 @@ const LIMIT_MARGIN_RAD: f32 = 1e-5;
 /// A leg is never stretched beyond this share of its greatest length: nearer to it a millimetre of the body is degrees at the
 /// joints.
 const STRETCH: f32 = 0.995;
+/// No joint is turned by more than this in one step, rad: the place moves on a curve, the step on its tangent.
+const MOST_STEP_RAD: f32 = 0.3;
+/// A joint is turned from its start by no more than this, rad: a solution farther off is another posture.
+const MOST_TURNED_RAD: LegBends = [1.0, 1.0, 1.0, 0.5];
 /// A leg turns and swings sideways no more than this, rad.
 const SIDEWAYS_RAD: f32 = 0.7;
 
@@ -40,8 +46,10 @@ pub(super) struct LegRig {
     pub(super) toe_lateral_m: f32,
     /// Limits of the four bends below the first bone, rad.
     limits_rad: [[f32; 2]; 4],
-    /// Greatest distance from shoulder or hip to toe, metres.
-    pub(super) reach_m: f32,
+    /// Greatest distance from shoulder or hip to toe in the leg's plane, metres.
+    reach_m: f32,
+    /// The same in space.
+    pub(super) span_m: f32,
     /// Covariance of hock and stifle, and variance of the hock, against the stifle's; none of it in a foreleg.
     coupling: [f32; 2],
     is_fore: bool,
@@ -77,6 +85,8 @@ pub(super) struct Reached {
     pub(super) abduction_rad: f32,
     /// What the toe misses its place by, metres.
     pub(super) miss_m: f32,
+    /// The same in the leg's plane: from the toe to its place, ahead and up, metres.
+    pub(super) missing_m: Vec2,
 }
 
 /// A skeleton laid out for speed.
@@ -179,10 +189,12 @@ impl LegRig {
             toe_lateral_m: bones[4].lateral_m,
             limits_rad,
             reach_m: 0.0,
+            span_m: 0.0,
             coupling: if is_fore { [0.0, 1.0] } else { [ratio, ratio * ratio + freedom * freedom] },
             is_fore,
         };
         leg.reach_m = STRETCH * leg.greatest_length_m();
+        leg.span_m = leg.reach_m.hypot(leg.toe_lateral_m - leg.joint_lateral_m);
         leg
     }
 
@@ -221,21 +233,16 @@ impl LegRig {
         girdle.joint + Turned::new(girdle.turn_rad).apply(toe.extend(lateral))
     }
 
-    /// How far the joint is from where a leg at its full reach would stand over the toe, along the root's Y axis, metres: positive
-    /// when the leg cannot reach. Not a number when the toe is too far aside for any height.
-    pub(super) fn lacking_m(&self, girdle: &Girdle, toe: Vec3) -> f32 {
-        let away = girdle.joint - toe;
-        let lateral = self.toe_lateral_m - self.joint_lateral_m;
-        let free = self.reach_m * self.reach_m + lateral * lateral - away.x * away.x - away.z * away.z;
-        away.y - free.sqrt()
-    }
-
     /// Turns the joints of a leg from a start as little as it takes to bring its toe to its place, within their limits.
     pub(super) fn solve(&self, girdle: &Girdle, start: &LegBends, aim: &Aim) -> Reached {
         let (sideways, place, beside_m) = self.sideways(girdle, aim);
-        let (bends_rad, miss_m) = self.solve_in_plane(girdle.angle_rad, start, place, aim.load);
-        let miss_m = miss_m + beside_m;
-        Reached { bends_rad, limb_turn_rad: sideways[0], abduction_rad: sideways[1], miss_m }
+        let (mut bends_rad, mut missing_m) = self.solve_in_plane(girdle.angle_rad, start, place, aim.load);
+        if aim.load > 0.0 && missing_m.length() > NEAR_M {
+            // Where a leg would otherwise not do, its locked joints give way before the body does.
+            (bends_rad, missing_m) = self.solve_in_plane(girdle.angle_rad, &bends_rad, place, 0.0);
+        }
+        let miss_m = if missing_m.is_finite() { missing_m.length() + beside_m } else { f32::INFINITY };
+        Reached { bends_rad, limb_turn_rad: sideways[0], abduction_rad: sideways[1], miss_m, missing_m }
     }
 
     /// Turn and abduction that bring the leg's plane over the toe, the toe's place in that plane as seen from the joint, and how far
@@ -262,31 +269,51 @@ impl LegRig {
         ([limb_turn, abduction], Vec2::new(seen.x, seen.y), (seen.z - lateral).abs())
     }
 
-    fn solve_in_plane(&self, angle: f32, start: &LegBends, place: Vec2, load: f32) -> (LegBends, f32) {
-        let mut bends: LegBends =
-            std::array::from_fn(|i| start[i].clamp(self.limits_rad[i][0], self.limits_rad[i][1]));
-        let mut best = (bends, f32::INFINITY);
+    fn solve_in_plane(&self, angle: f32, start: &LegBends, place: Vec2, load: f32) -> (LegBends, Vec2) {
+        let limits: [[f32; 2]; 4] = std::array::from_fn(|i| {
+            let [low, high] = self.limits_rad[i];
+            let most = MOST_TURNED_RAD[i];
+            [low.max((start[i] - most).min(high)), high.min((start[i] + most).max(low))]
+        });
+        let wanted = place;
+        let place = if place.length() > self.reach_m { place.clamp_length_max(self.reach_m) } else { place };
+        let mut bends: LegBends = std::array::from_fn(|i| start[i].clamp(limits[i][0], limits[i][1]));
+        // The whole leg is turned towards the place first, so that only its length is left to be solved.
+        let toe = self.places(angle, &bends)[4];
+        let aside = toe.perp_dot(place).atan2(toe.dot(place));
+        if aside.is_finite() {
+            bends[0] = (bends[0] + aside).clamp(limits[0][0], limits[0][1]);
+        }
+        let mut best = (bends, Vec2::INFINITY);
         for _ in 0..STEPS {
             let places = self.places(angle, &bends);
             let miss = place - places[4];
             let miss_m = miss.length();
-            if miss_m < best.1 {
-                best = (bends, miss_m);
+            if miss_m < best.1.length() {
+                best = (bends, miss);
             }
             if miss_m < THERE_M || miss_m.is_nan() {
                 break;
             }
-            let turn = self.turn(&places, &bends, miss, load);
+            let turn = self.turn(&places, &bends, &limits, miss, load);
+            let most = turn.iter().fold(MOST_STEP_RAD, |most, turn| turn.abs().max(most));
             for i in 0..4 {
-                let [low, high] = self.limits_rad[i];
-                bends[i] = (bends[i] + turn[i]).clamp(low, high);
+                let turn = turn[i] * MOST_STEP_RAD / most;
+                bends[i] = (bends[i] + turn).clamp(limits[i][0], limits[i][1]);
             }
         }
-        best
+        (best.0, best.1 + (wanted - place))
     }
 
     /// The damped step of all joints that are not held by a limit: `W J' (J W J' + d^2)^-1 miss`, with W the joints' covariance.
-    fn turn(&self, places: &[Vec2; 5], bends: &LegBends, miss: Vec2, load: f32) -> LegBends {
+    fn turn(
+        &self,
+        places: &[Vec2; 5],
+        bends: &LegBends,
+        limits: &[[f32; 2]; 4],
+        miss: Vec2,
+        load: f32,
+    ) -> LegBends {
         let carpus = if self.is_fore { 1.0 + load * (LOCKED - 1.0) } else { self.coupling[1] };
         let fetlock = PASSIVE + load * (1.0 - PASSIVE);
         let mut free = [1.0f32; 4];
@@ -316,7 +343,7 @@ impl LegRig {
             step = std::array::from_fn(|i| free[i] * pulled[i].dot(solved));
             let mut is_held = false;
             for i in 0..4 {
-                let [low, high] = self.limits_rad[i];
+                let [low, high] = limits[i];
                 let held = (bends[i] <= low && step[i] < 0.0) || (bends[i] >= high && step[i] > 0.0);
                 if held && free[i] > 0.0 {
                     (free[i], is_held) = (0.0, true);

@@ -1,11 +1,12 @@
 //! All that changes from step to step.
 
-use glam::DVec2;
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::feet::Foot;
 use super::gait_choice::Choice;
 use super::leaping::Leaping;
+use super::mixture::Timing;
 use super::terrain::Terrain;
 use super::track::Track;
 use super::warp::Warp;
@@ -27,10 +28,14 @@ pub struct HorseState {
     pub(super) random: Random,
     /// The speed that the ways of moving are played at, m/s.
     pub(super) wished_m_s: f32,
-    /// Strides per second of the clock.
+    /// The timing of what it does now.
+    pub(super) timing: Timing,
+    /// Strides per second of the clock; none at rest.
     pub(super) rate_hz: f32,
     /// Speed along the heading, m/s.
     pub(super) speed_m_s: f32,
+    /// What the stride's length gains in a stride, metres.
+    pub(super) gain_m: f32,
     /// Whether a halt is asked for.
     pub(super) is_halting: bool,
     /// Whether a standing horse has yet a step to take.
@@ -41,17 +46,13 @@ pub struct HorseState {
     pub(super) stillness: f32,
     /// The body against its place on the track: where its standing feet draw it, ahead and to the right, metres.
     pub(super) drawn_m: [f32; 2],
-    pub(super) lowered_m: f32,
+    /// The body against where its stride has it: pulled by feet that are out of reach, world space, metres.
+    pub(super) pull_m: Vec3,
 }
 
 impl HorseState {
     /// The speeds that gaits and the leap are played at, m/s.
     pub(super) fn speeds_m_s(&self) -> [f32; 2] {
         [self.wished_m_s, self.leaping.speed_m_s.max(1.0)]
-    }
-
-    /// World x and z of the horse's place on its track, metres.
-    pub(super) fn at_m(&self) -> DVec2 {
-        self.track.at_m
     }
 }

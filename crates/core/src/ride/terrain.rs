@@ -4,7 +4,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::ground::Ground;
-use super::track::{Track, ahead};
+use super::track::{Facing, Track};
 
 /// The ground under a girdle is the mean over so many places of a stretch along the track.
 const PLACES: usize = 5;
@@ -47,6 +47,11 @@ impl Terrain {
         ((self.lifts_m[1] - self.lifts_m[0]) / trunk_m).clamp(-MOST_SLOPE, MOST_SLOPE)
     }
 
+    /// Horizontal over real distance.
+    pub(super) fn level(&self, trunk_m: f32) -> f32 {
+        1.0 / self.slope(trunk_m).hypot(1.0)
+    }
+
     /// Share of their length that steps keep here: a leg that reaches downhill has farther to go.
     pub(super) fn step_share(&self, trunk_m: f32) -> f32 {
         1.0 / (1.0 + SHORTENING * self.slope(trunk_m).abs())
@@ -80,7 +85,7 @@ impl Terrain {
 }
 
 fn mean_height_m(track: &Track, ahead_m: f32, size: f32, ground: &impl Ground) -> Option<f32> {
-    let forward = ahead(track.heading_rad);
+    let forward = Facing::new(track.heading_rad).ahead;
     let (mut sum, mut count) = (0.0, 0u8);
     for k in 0..PLACES {
         let along = HALF_STRETCH_M * size * (2.0 * k as f32 / (PLACES - 1) as f32 - 1.0);

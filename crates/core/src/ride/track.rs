@@ -41,13 +41,15 @@ pub(super) struct Track {
     pub(super) lean_rad: f32,
 }
 
-/// How much of the way to a wish is gone after a time, for a first-order lag.
+/// How much of the way to a wish is gone after a time, for a first-order lag: `1 - exp(-t)` to half a percent, without an
+/// exponential.
 pub(super) fn lagged(dt_s: f32, lag_s: f32) -> f32 {
-    1.0 - (-dt_s / lag_s).exp()
+    let t = dt_s / lag_s;
+    1.0 - 1.0 / (1.0 + t + 0.48 * t * t + 0.235 * t * t * t)
 }
 
 /// Unit vector ahead of a heading: world x and z.
-pub(super) fn ahead(heading_rad: f64) -> DVec2 {
+fn ahead(heading_rad: f64) -> DVec2 {
     let (sin, cos) = heading_rad.sin_cos();
     DVec2::new(cos, -sin)
 }
@@ -107,22 +109,36 @@ impl Track {
         let balance = (self.turn_rate_rad_s * speed_m_s / super::retarget::GRAVITY_M_S2).atan();
         self.lean_rad += (LEAN_SHARE * balance - self.lean_rad) * lagged(dt_s, LEANING_S);
     }
-
-    /// Where the horse will be after going on so far, metres, turning by an angle meanwhile.
-    pub(super) fn after(&self, distance_m: f32, turned_rad: f32) -> (DVec2, f64) {
-        let turned = f64::from(turned_rad);
-        (
-            self.at_m + ahead(self.heading_rad + 0.5 * turned) * f64::from(distance_m),
-            self.heading_rad + turned,
-        )
-    }
 }
 
-/// World x and z of a place given ahead and to the right of a point with a heading, metres.
-pub(super) fn beside(at_m: DVec2, heading_rad: f64, ahead_right_m: Vec2) -> DVec2 {
-    let forward = ahead(heading_rad);
-    let right = DVec2::new(-forward.y, forward.x);
-    at_m + forward * f64::from(ahead_right_m.x) + right * f64::from(ahead_right_m.y)
+/// A direction on the ground: the unit vectors ahead and to the right, world x and z.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Facing {
+    pub(super) ahead: DVec2,
+}
+
+impl Facing {
+    pub(super) fn new(heading_rad: f64) -> Self {
+        Self { ahead: ahead(heading_rad) }
+    }
+
+    pub(super) fn right(&self) -> DVec2 {
+        DVec2::new(-self.ahead.y, self.ahead.x)
+    }
+
+    /// The same turned to the left.
+    pub(super) fn turned(&self, by_rad: f32) -> Self {
+        if by_rad == 0.0 {
+            return *self;
+        }
+        let (sin, cos) = by_rad.sin_cos();
+        Self { ahead: self.ahead * f64::from(cos) - self.right() * f64::from(sin) }
+    }
+
+    /// World x and z of a place given ahead and to the right, metres.
+    pub(super) fn beside(&self, at_m: DVec2, ahead_right_m: Vec2) -> DVec2 {
+        at_m + self.ahead * f64::from(ahead_right_m.x) + self.right() * f64::from(ahead_right_m.y)
+    }
 }
 
 #[cfg(test)]
@@ -137,7 +153,9 @@ mod tests {
         }
         assert!(track.heading_rad > 0.2 && track.at_m.y < -0.1, "{track:?}");
         assert!(track.lean_rad > 0.0 && track.bends_rad.iter().all(|bend| *bend > 0.0));
-        assert!(beside(DVec2::ZERO, 0.0, Vec2::new(1.0, 0.5)).distance(DVec2::new(1.0, 0.5)) < 1e-12);
+        let facing = Facing::new(0.0);
+        assert!(facing.beside(DVec2::ZERO, Vec2::new(1.0, 0.5)).distance(DVec2::new(1.0, 0.5)) < 1e-12);
+        assert!(facing.turned(0.3).ahead.distance(ahead(0.3)) < 1e-6);
     }
 
     #[test]

@@ -21,6 +21,8 @@ pub(super) const CHANGE_STRIDES: f32 = 2.5;
 pub(super) struct Warp {
     /// Strides gone.
     pub(super) clock: f64,
+    /// How far the phase of the stride is ahead of the clock.
+    ahead: f32,
     offsets: [f32; 4],
     /// How fast the offsets move, per stride of the clock.
     drifts: [f32; 4],
@@ -67,7 +69,7 @@ impl Warp {
         let mut weights = [0.0; Way::COUNT];
         weights[way.index()] = 1.0;
         let offsets = strikes(repertoire, way).map(|strike| -strike);
-        Self { clock: 0.0, offsets, drifts: [0.0; 4], weights, to: way, change: None }
+        Self { clock: 0.0, ahead: 0.0, offsets, drifts: [0.0; 4], weights, to: way, change: None }
     }
 
     /// Where each leg is in its cycle from strike to strike, `[0, 1)`.
@@ -77,6 +79,12 @@ impl Warp {
             let cycle = (phase + offset).rem_euclid(1.0);
             if cycle < 1.0 { cycle } else { 0.0 }
         })
+    }
+
+    /// Phase of the stride, `[0, 1)`: that of the way it is in or changes to, exact when no change is under way.
+    pub(super) fn phase(&self) -> f32 {
+        let phase = (self.clock + f64::from(self.ahead)).rem_euclid(1.0) as f32;
+        if phase < 1.0 { phase } else { 0.0 }
     }
 
     /// How fast each leg's cycle goes, cycles per stride of the clock.
@@ -172,12 +180,9 @@ impl Warp {
     fn arrive(&mut self, repertoire: &Repertoire) {
         let Some(change) = self.change.take() else { return };
         let strikes = strikes(repertoire, self.to);
-        // The legs agree on where the clock would have to be; it is set there.
-        let ends: [f32; 4] =
-            std::array::from_fn(|limb| change.from_offsets[limb] + change.gains[limb] + strikes[limb]);
-        let ahead = ends[0];
-        self.clock += f64::from(nearest(ahead));
-        self.offsets = strikes.map(|strike| -strike);
+        // The legs agree on where in the stride they are.
+        self.ahead = nearest(change.from_offsets[0] + change.gains[0] + strikes[0]);
+        self.offsets = strikes.map(|strike| self.ahead - strike);
         self.drifts = [0.0; 4];
         self.weights = [0.0; Way::COUNT];
         self.weights[self.to.index()] = 1.0;
