@@ -17,6 +17,10 @@ use super::warp::Warp;
 const RISEN_BY: f32 = 0.6;
 /// Share of the swing from which the body makes ready for the strike.
 const HEEDED_FROM: f32 = 0.35;
+/// Places at which a foot in the air feels for risers, ahead of it, metres of a reference horse.
+const LOOKED_AHEAD: [f32; 4] = [-0.12, 0.08, 0.16, 0.24];
+/// A riser so far away is nothing to it.
+const LOOKED_AT_MOST_M: f32 = 0.32;
 /// Height a foot is lifted to for a step on the spot, metres of a reference horse.
 const SMALL_STEP_M: f32 = 0.07;
 /// Height a foot keeps over the ground in the middle of its swing, metres of a reference horse: less than the database's strides do.
@@ -56,8 +60,9 @@ pub(super) struct Going<'a> {
     pub(super) gain_m: f32,
     /// In a leap: the leap, what there is to leap with, and the clock.
     pub(super) leap: Option<(&'a Leaping, &'a Repertoire, &'a Warp)>,
-    /// How much higher the body is than it will be when it lands, metres.
+    /// How much higher the body is than it will be when it lands, metres, and how much it heeds that it will.
     pub(super) falls_m: f32,
+    pub(super) heeds: f32,
     /// Turn in a stride, rad.
     pub(super) turn_rad: f32,
     /// Rise over run under the horse, and horizontal over real distance there.
@@ -143,7 +148,7 @@ impl Going<'_> {
     /// Where the stride alone would bring the toe at its strike, and how far the horse has gone by then, world x and z, metres.
     fn own_strike(&self, leg: &LegNow, strides: f32) -> (DVec2, DVec2) {
         let (at, _, facing) = self.after(strides);
-        let ahead = self.timing.prints_m[leg.limb] + 0.5 * self.timing.steps_m[leg.limb];
+        let ahead = self.timing.prints_m[leg.limb] + 0.5 * self.timing.own_steps_m[leg.limb];
         let ahead = ahead + self.standing_after(strides) * (leg.standing_m - ahead);
         (facing.beside(at, Vec2::new(ahead * self.level, leg.lateral_m)), at - self.at_m)
     }
@@ -236,7 +241,7 @@ impl Foot {
             heading_rad: heading_rad + turn * f64::from(late),
             load: 1.0 - smooth(share.min(1.0 - share) / super::retarget::EASING),
             bears_at: DVec3::new(seen.x, f64::from(next_height - risen_m), seen.y),
-            bears: smooth((share - HEEDED_FROM) / (1.0 - HEEDED_FROM)),
+            bears: going.heeds * smooth((share - HEEDED_FROM) / (1.0 - HEEDED_FROM)),
         }
     }
 
@@ -260,7 +265,15 @@ impl Foot {
         let early = 1.0 - 2.0 * self.left;
         let least = going.standing.max(early) * SMALL_STEP_M * going.size * arc * arc;
         let path = base + leg.toe_m[1].max(least);
-        let over = height_m(ground, at).unwrap_or(base) + CLEARANCE_M * going.size * arc * arc;
-        path.max(over)
+        let here = height_m(ground, at).unwrap_or(base) + CLEARANCE_M * going.size * arc * arc;
+        // A riser is seen before the toe is over it, and left behind as gently.
+        let mut height = path.max(here);
+        for step in LOOKED_AHEAD {
+            let place = at + going.facing.ahead * f64::from(step * going.size);
+            let there = height_m(ground, place).unwrap_or(base);
+            let nearness = (1.0 - (step / LOOKED_AT_MOST_M).abs()) * smooth(2.0 * arc);
+            height = height.max(path + (there - path) * nearness);
+        }
+        height
     }
 }

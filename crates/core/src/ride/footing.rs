@@ -25,6 +25,7 @@ impl HorseState {
             gain_m: self.gain_m,
             leap: self.leaping.leads_feet().then_some((&self.leaping, repertoire, &self.warp)),
             falls_m: self.leaping.falls_m(repertoire, &self.warp),
+            heeds: self.leaping.heeds(),
             turn_rad: self.track.turn_rate_rad_s / timing.rate_hz,
             slope: self.terrain.slope(trunk_m),
             level: self.terrain.level(trunk_m),

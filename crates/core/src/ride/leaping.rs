@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::command::Leap;
 use super::leap_clip::LeapClip;
 use super::repertoire::{Repertoire, Way};
+use super::retarget::smooth;
 use super::warp::Warp;
 use crate::gait::Gait;
 
@@ -22,6 +23,8 @@ const LANDED: f32 = 0.4;
 /// The leap's postures come and go within so many strides: its stride has a flight, and only what is on the ground before and
 /// after it is to be mixed with a gait.
 const MIXED_STRIDES: f32 = 0.35;
+/// Share of the flight from which the body makes ready to land.
+const HEEDED_FROM: f32 = 0.5;
 /// The approach is at its speed when it is as near as this, m/s.
 const AT_SPEED_M_S: f32 = 0.25;
 
@@ -153,6 +156,10 @@ impl Leaping {
         if !self.is_flying(leap, phase) {
             return rate_hz;
         }
+        if self.flown_s == 0.0 {
+            // The flight began between two steps.
+            self.flown_s = (phase - leap.take_off) / rate_hz;
+        }
         self.flown_s += dt_s;
         let share = (self.flown_s / self.flight_s).min(1.0);
         let landing = if share >= 1.0 { 1e-4 } else { 0.0 };
@@ -163,12 +170,22 @@ impl Leaping {
     pub(super) fn time_s(&self, repertoire: &Repertoire, warp: &Warp, strides: f32, rate_hz: f32) -> f32 {
         let (leap, phase) = (&repertoire.leap, warp.phase());
         let to = phase + strides;
-        let is_ahead = self.stage == Stage::Leaping && self.flown_s < self.flight_s && to >= leap.landing;
+        let is_ahead =
+            self.stage == Stage::Leaping && self.flown_s < self.flight_s && to > leap.landing - 1e-3;
         if !is_ahead {
             return strides / rate_hz;
         }
         let before = (leap.take_off - phase).max(0.0) / rate_hz;
         before + self.flight_s - self.flown_s + (to - leap.landing) / rate_hz
+    }
+
+    /// How much the body heeds the strikes to come, 0 to 1: not before the flight comes to its end.
+    pub(super) fn heeds(&self) -> f32 {
+        if self.stage == Stage::Leaping {
+            smooth((self.flown_s / self.flight_s - HEEDED_FROM) / (1.0 - HEEDED_FROM))
+        } else {
+            1.0
+        }
     }
 
     /// How much higher the body is than it will be at the landing, metres; zero but in flight.

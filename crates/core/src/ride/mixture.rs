@@ -23,6 +23,8 @@ pub(super) struct Timing {
     pub(super) duties: [f32; 4],
     /// How far the body goes over each standing hoof, metres.
     pub(super) steps_m: [f32; 4],
+    /// How far its stride has each standing hoof go against the body, metres: the same, but in a leap at another speed.
+    pub(super) own_steps_m: [f32; 4],
     /// Where each hoof stands ahead of the horse's place at the middle of the stance, metres.
     pub(super) prints_m: [f32; 4],
 }
@@ -36,6 +38,7 @@ impl Timing {
     /// The same with steps of a share of their length: half of what is lacking is made up by their rate, the rest costs speed.
     pub(super) fn shortened(mut self, share: f32) -> Self {
         self.steps_m = self.steps_m.map(|step_m| step_m * share);
+        self.own_steps_m = self.own_steps_m.map(|step_m| step_m * share);
         self.rate_hz /= share.sqrt();
         self.speed_m_s *= share.sqrt();
         self
@@ -147,6 +150,7 @@ impl<'a> Mixture<'a> {
             length_m += weight * own_m;
             for limb in 0..4 {
                 timing.steps_m[limb] += weight * paced.duty(limb) * own_m;
+                timing.own_steps_m[limb] += weight * paced.duty(limb) * paced.length_m();
                 timing.prints_m[limb] += weight * paced.print_m(limb);
             }
         }
