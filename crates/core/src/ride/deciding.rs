@@ -35,7 +35,7 @@ impl HorseState {
         let halting_m_s = repertoire.speed_m_s(HALTING_MPH);
         self.is_halting = halts && self.leaping.stage == Stage::None;
         // From a stand a horse walks off before it does anything else.
-        let (gait, asked_m_s) = match self.leaping.approach(repertoire) {
+        let (gait, asked_m_s) = match self.leaping.approach(repertoire, self.warp.to.gait) {
             _ if self.is_halting => (Gait::Walk, halting_m_s),
             _ if self.stillness > 0.0 => (Gait::Walk, asked_m_s.max(halting_m_s)),
             Some(approach) => approach,

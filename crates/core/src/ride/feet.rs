@@ -105,13 +105,10 @@ impl Going<'_> {
         if let Some((leaping, repertoire, warp)) = self.leap {
             return self.timing.speed_m_s * leaping.time_s(repertoire, warp, strides, self.timing.rate_hz);
         }
-        let gained_m = 0.5 * self.gain_m * strides * strides.abs();
-        let lengths = if self.stillness == 0.0 && !self.is_halting {
-            strides
-        } else {
-            stillness::stride_lengths(self.stillness, self.is_halting, strides)
-        };
-        self.timing.stride_m() * lengths + gained_m
+        if self.stillness == 0.0 && !self.is_halting {
+            return self.timing.stride_m() * strides + 0.5 * self.gain_m * strides * strides.abs();
+        }
+        self.timing.stride_m() * stillness::stride_lengths(self.stillness, self.is_halting, strides)
     }
 
     /// Place, turn (rad) and direction so many strides from now.

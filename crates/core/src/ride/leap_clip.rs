@@ -74,11 +74,8 @@ impl LeapClip {
 /// push.
 const SECTION: [f32; 5] = [-0.25, -0.15, -0.05, 0.05, 0.15];
 
-/// Gaits are compared at strides whose speed is the leap's within this share.
-const AT_SPEED: f32 = 0.1;
-
-/// The gait at the leap's speed with the section most like the leap's own, by the bends of all leg bones: mean square over section
-/// and legs, at the phase and side where it is least.
+/// The gait with a lead whose section, at its speed nearest to the leap's, is most like the leap's own, by the bends of all leg
+/// bones: mean square over section and legs, at the phase and side where it is least.
 fn nearest_gait(leap: &Stride, database: &Database) -> Gait {
     let distance = |stride: &Stride, phase: f32, is_mirrored: bool| -> f32 {
         let moment = |offset: f32| {
@@ -90,7 +87,8 @@ fn nearest_gait(leap: &Stride, database: &Database) -> Gait {
     };
     let nearest = |gait: Gait| -> f32 {
         let off = |stride: &&Stride| (stride.speed_m_s / leap.speed_m_s - 1.0).abs();
-        let strides = database.strides_of(gait).filter(|stride| off(stride) < AT_SPEED);
+        // Horses leap with the hind feet nearly together, out of a gait that has a lead.
+        let strides = database.strides_of(gait).filter(|stride| stride.lead.is_some());
         let Some(stride) = strides.min_by(|a, b| off(a).total_cmp(&off(b))) else { return f32::INFINITY };
         let phases = (0..PHASES).map(|k| k as f32 / PHASES as f32);
         phases

@@ -72,8 +72,22 @@ impl Leaping {
     }
 
     /// The gait and the speed (m/s) to approach in; none when nothing is to be leapt.
-    pub(super) fn approach(&self, repertoire: &Repertoire) -> Option<(Gait, f32)> {
-        (self.stage == Stage::Approach).then_some((repertoire.leap.approach, self.speed_m_s))
+    pub(super) fn approach(&self, repertoire: &Repertoire, now: Gait) -> Option<(Gait, f32)> {
+        (self.stage == Stage::Approach).then_some((self.gait_about(repertoire, now), self.speed_m_s))
+    }
+
+    /// The gait to leap from and to land into: the one it is in where that has a lead and the leap's speed, the one whose postures
+    /// are nearest otherwise, or the gallop where that one is too slow.
+    fn gait_about(&self, repertoire: &Repertoire, now: Gait) -> Gait {
+        let fits = |gait: Gait| {
+            let [slow, fast] = repertoire.playable_m_s(gait);
+            (slow..=fast).contains(&self.speed_m_s)
+        };
+        if matches!(now, Gait::Canter | Gait::Gallop) && fits(now) {
+            return now;
+        }
+        let nearest = repertoire.leap.approach;
+        if self.speed_m_s > repertoire.playable_m_s(nearest)[1] { Gait::Gallop } else { nearest }
     }
 
     /// Whether gait and speed are the leap's own business now.
@@ -86,21 +100,16 @@ impl Leaping {
         matches!(self.stage, Stage::Gathering | Stage::Leaping)
     }
 
-    /// The gait to land into: the one leapt from, or the gallop where it is too slow for the leap's speed.
-    fn landing_gait(&self, repertoire: &Repertoire) -> Gait {
-        let approach = repertoire.leap.approach;
-        if self.speed_m_s > repertoire.playable_m_s(approach)[1] { Gait::Gallop } else { approach }
-    }
-
     /// Goes from stage to stage. `wished_m_s` is the speed the gaits are played at: the leap hands its own on when it lands.
     pub(super) fn advance(&mut self, repertoire: &Repertoire, warp: &mut Warp, wished_m_s: &mut f32) {
         let leap = &repertoire.leap;
         match self.stage {
             Stage::None => {}
             Stage::Approach => {
-                let [slow, fast] = repertoire.playable_m_s(leap.approach);
+                let gait = self.gait_about(repertoire, warp.to.gait);
+                let [slow, fast] = repertoire.playable_m_s(gait);
                 let is_there = (*wished_m_s - self.speed_m_s.clamp(slow, fast)).abs() < AT_SPEED_M_S;
-                if is_there && warp.is_steady() && warp.to.gait == leap.approach {
+                if is_there && warp.is_steady() && warp.to.gait == gait {
                     let way = Way { gait: Gait::Leap, is_mirrored: warp.to.is_mirrored };
                     warp.begin_to_phase(repertoire, way, [GATHERING_STRIDES, MIXED_STRIDES], 0.0);
                     self.stage = Stage::Gathering;
@@ -116,7 +125,7 @@ impl Leaping {
                     && warp.phase() >= leap.landing + LANDED * (1.0 - leap.landing)
                 {
                     self.stage = Stage::Landing;
-                    let gait = self.landing_gait(repertoire);
+                    let gait = self.gait_about(repertoire, Gait::Leap);
                     let next = match repertoire.lead(Way::of(gait)) {
                         Some(_) => Way { gait, is_mirrored: warp.to.is_mirrored },
                         None => Way::of(gait),
@@ -142,6 +151,11 @@ impl Leaping {
         self.is_flying(&repertoire.leap, warp.phase())
     }
 
+    /// Time gone of the flight, s; what is gone of it when it began between two steps as well.
+    fn flown_s(&self, leap: &LeapClip, phase: f32, rate_hz: f32) -> f32 {
+        if self.flown_s > 0.0 { self.flown_s } else { (phase - leap.take_off).max(0.0) / rate_hz }
+    }
+
     /// Phase of the flight at a share of its time: it leaves and arrives at the rate the feet have on the ground.
     fn flight_phase(&self, leap: &LeapClip, share: f32, rate_hz: f32) -> f32 {
         let span = leap.landing - leap.take_off;
@@ -156,11 +170,7 @@ impl Leaping {
         if !self.is_flying(leap, phase) {
             return rate_hz;
         }
-        if self.flown_s == 0.0 {
-            // The flight began between two steps.
-            self.flown_s = (phase - leap.take_off) / rate_hz;
-        }
-        self.flown_s += dt_s;
+        self.flown_s = self.flown_s(leap, phase, rate_hz) + dt_s;
         let share = (self.flown_s / self.flight_s).min(1.0);
         let landing = if share >= 1.0 { 1e-4 } else { 0.0 };
         (self.flight_phase(leap, share, rate_hz) + landing - phase).max(0.0) / dt_s
@@ -213,8 +223,10 @@ impl Leaping {
         };
         match self.stage {
             Stage::Leaping if self.is_flying(leap, phase) => {
-                let (share, stored) =
-                    (self.flown_s / self.flight_s, (phase - leap.take_off) / (leap.landing - leap.take_off));
+                let (share, stored) = (
+                    self.flown_s(leap, phase, rate_hz) / self.flight_s,
+                    (phase - leap.take_off) / (leap.landing - leap.take_off),
+                );
                 let height = |rise_m: f32, t: f32| climb * t + 4.0 * rise_m * t * (1.0 - t);
                 height(self.height_m, share) - height(stored_rise_m, stored)
             }

@@ -11,6 +11,8 @@ use crate::gait::Gait;
 
 /// Acceleration and deceleration within a gait, m/s^2: brisk, but no racehorse's start. During a change the gaits decide.
 const ACCELERATION_M_S2: [f32; 2] = [3.0, 4.0];
+/// A horse turns no farther than this in a stride, rad: a foot stands for more than half of a slow one, and the body turns over it.
+const MOST_TURNED_RAD: f32 = 0.6;
 /// A stride's length gains or loses at most this share of it in a stride, as far as the next prints are concerned.
 const MOST_GAIN: f32 = 0.7;
 /// Strides over which that gain is averaged.
@@ -29,7 +31,7 @@ impl HorseState {
         self.pace(repertoire, wanted_m_s, dt_s);
         let (trunk_m, size) = (repertoire.rig.trunk_m, repertoire.size);
         let forward_m_s = self.speed_m_s * self.terrain.level(trunk_m);
-        let most = Track::most_rad_s(self.speed_m_s, size);
+        let most = Track::most_rad_s(self.speed_m_s, size).min(MOST_TURNED_RAD * self.timing.rate_hz);
         let flies = self.leaping.flies(repertoire, &self.warp);
         let sought = if flies { 0.0 } else { self.track.sought_rad_s(command.turn, most) };
         self.track.advance(forward_m_s, self.speed_m_s, sought, trunk_m, dt_s);
