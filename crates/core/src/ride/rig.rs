@@ -10,6 +10,8 @@ use crate::skeleton::{BONE_COUNT, Skeleton, bone};
 const THERE_M: f32 = 1e-5;
 /// A loaded leg that misses by more than this is solved again with its joints unlocked, metres.
 const NEAR_M: f32 = 1.5e-5;
+/// The same for a toe in the air, metres.
+const THERE_IN_AIR_M: f32 = 2e-4;
 /// Steps of the solution; three do for a foot that is nearly in place, more when a joint runs into its limit.
 const STEPS: usize = 12;
 /// Greatest damping, m/rad: calm at full stretch, small against a leg of a metre.
@@ -279,20 +281,23 @@ impl LegRig {
         let place = if place.length() > self.reach_m { place.clamp_length_max(self.reach_m) } else { place };
         let mut bends: LegBends = std::array::from_fn(|i| start[i].clamp(limits[i][0], limits[i][1]));
         // The whole leg is turned towards the place first, so that only its length is left to be solved.
-        let toe = self.places(angle, &bends)[4];
-        let aside = toe.perp_dot(place).atan2(toe.dot(place));
+        let mut places = self.places(angle, &bends);
+        let aside = places[4].perp_dot(place).atan2(places[4].dot(place));
         if aside.is_finite() {
-            bends[0] = (bends[0] + aside).clamp(limits[0][0], limits[0][1]);
+            let turned = (bends[0] + aside).clamp(limits[0][0], limits[0][1]) - bends[0];
+            bends[0] += turned;
+            let turn = Vec2::from_angle(turned);
+            places = places.map(|place| turn.rotate(place));
         }
+        let there_m = if load > 0.0 { THERE_M } else { THERE_IN_AIR_M };
         let mut best = (bends, Vec2::INFINITY);
         for _ in 0..STEPS {
-            let places = self.places(angle, &bends);
             let miss = place - places[4];
             let miss_m = miss.length();
             if miss_m < best.1.length() {
                 best = (bends, miss);
             }
-            if miss_m < THERE_M || miss_m.is_nan() {
+            if miss_m < there_m || miss_m.is_nan() {
                 break;
             }
             let turn = self.turn(&places, &bends, &limits, miss, load);
@@ -301,6 +306,7 @@ impl LegRig {
                 let turn = turn[i] * MOST_STEP_RAD / most;
                 bends[i] = (bends[i] + turn).clamp(limits[i][0], limits[i][1]);
             }
+            places = self.places(angle, &bends);
         }
         (best.0, best.1 + (wanted - place))
     }
