@@ -28,7 +28,8 @@ use crate::views;
 use dialogs::{After, Dialog};
 pub use places::Places;
 
-use crate::command::Command;
+use crate::command::{Command, Scope};
+use crate::views::ride_page::RidePage;
 
 /// What a page may use of the program besides its plate.
 pub struct PageContext<'a> {
@@ -50,6 +51,8 @@ pub struct Annotator {
     pub messages: Messages,
     /// The open plate.
     pub session: Option<Session>,
+    /// The Ride page, which needs no plate.
+    pub ride: RidePage,
     palette: Option<Palette>,
     key_editor: Option<KeyEditor>,
     browser: Option<Browser>,
@@ -68,6 +71,7 @@ impl Annotator {
         let mut annotator = Self {
             messages: Messages::default(),
             session: None,
+            ride: RidePage::default(),
             palette: None,
             key_editor: None,
             browser: None,
@@ -115,8 +119,13 @@ impl Annotator {
             self.leave(&context, After::Open(path));
         }
         if let Some(session) = &mut self.session {
-            let Self { settings, messages, .. } = self;
-            session.before_frame(&context, settings.fit_always);
+            session.before_frame(&context, self.settings.fit_always);
+        }
+        let Self { settings, messages, session, ride, .. } = self;
+        if ride.is_open() {
+            let mut page = PageContext { settings, messages, commands: &mut commands };
+            ride.show(ui, session.as_mut(), &mut page);
+        } else if let Some(session) = session {
             plate_ui(ui, session, &mut PageContext { settings, messages, commands: &mut commands });
         } else {
             let welcome = |ui: &mut Ui| views::welcome::show(ui, &self.settings, &mut commands);
@@ -142,13 +151,18 @@ impl Annotator {
         if context.egui_wants_keyboard_input() {
             return;
         }
-        let pressed: Vec<_> =
-            context.input(|input| input.events.iter().filter_map(crate::keys::pressed).collect());
-        for key in pressed {
-            if let Some(command) = self.settings.keys.command(&key) {
+        let on = if self.ride.is_open() { Scope::Ride } else { Scope::Plate };
+        let pressed: Vec<_> = context.input(|input| {
+            let key = |event| Some((crate::keys::pressed(event)?, is_repeated(event)));
+            input.events.iter().filter_map(key).collect()
+        });
+        for (key, is_repeated) in pressed {
+            if let Some(command) = self.settings.keys.command(&key, on) {
                 // Otherwise the focus of the keyboard moves, too.
                 context.input_mut(|input| input.consume_key(key.modifiers, key.logical_key));
-                commands.push(command);
+                if command.repeats() || !is_repeated {
+                    commands.push(command);
+                }
             }
         }
     }
@@ -265,6 +279,7 @@ impl Annotator {
             session.edit("Annotator", |draft| draft.annotation.annotator = name);
         }
         self.session = Some(session);
+        self.ride.close();
     }
 
     /// Whether the open plate has changes that are not saved, what is being typed or dragged among them.
@@ -295,6 +310,11 @@ impl Annotator {
             self.messages.trouble(format!("Settings are not kept: {trouble}"));
         }
     }
+}
+
+/// Whether a key's event only says that it is still down.
+fn is_repeated(event: &egui::Event) -> bool {
+    matches!(event, egui::Event::Key { repeat: true, .. })
 }
 
 /// The pages of an open plate.

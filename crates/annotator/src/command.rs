@@ -18,21 +18,42 @@ pub enum Menu {
     Pose,
     /// Footfalls and the fit.
     Gait,
+    /// Driving the horse.
+    Ride,
     /// Help and settings.
     Help,
 }
 
 impl Menu {
     /// All menus in the order of the bar, with their titles.
-    pub const ALL: [(Self, &'static str); 7] = [
+    pub const ALL: [(Self, &'static str); 8] = [
         (Self::File, "File"),
         (Self::Edit, "Edit"),
         (Self::View, "View"),
         (Self::Plate, "Plate"),
         (Self::Pose, "Pose"),
         (Self::Gait, "Gait"),
+        (Self::Ride, "Ride"),
         (Self::Help, "Help"),
     ];
+}
+
+/// Where a command acts, and its keys with it: the same key may do one thing on the pages of a plate and another on the Ride page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// On every page.
+    Everywhere,
+    /// On the pages of a plate.
+    Plate,
+    /// On the Ride page.
+    Ride,
+}
+
+impl Scope {
+    /// Whether there is a page on which both act.
+    pub fn meets(self, other: Self) -> bool {
+        self == other || self == Self::Everywhere || other == Self::Everywhere
+    }
 }
 
 /// What the table says of a command.
@@ -148,6 +169,8 @@ commands! {
     PageGait, "page-gait", "Gait page", View, [plain(Key::F4)];
     /// The fitted stride, moving.
     PagePlay, "page-play", "Play page", View, [plain(Key::F5)];
+    /// A horse to drive.
+    PageRide, "page-ride", "Ride page", View, [plain(Key::F6)];
     /// The panel after this one; around the stride.
     NextPanel, "next-panel", "Next panel", View, [plain(Key::Period), plain(Key::PageDown)];
     /// The panel before this one.
@@ -242,6 +265,47 @@ commands! {
     /// Moves, or stops.
     PlayStride, "play", "Play or pause", Gait, [plain(Key::Enter)];
 
+    /// A mile per hour more.
+    RideFaster, "ride-faster", "Faster by 1 mph", Ride, [plain(Key::ArrowUp), plain(Key::W)];
+    /// A mile per hour less.
+    RideSlower, "ride-slower", "Slower by 1 mph", Ride, [plain(Key::ArrowDown), plain(Key::S)];
+    /// A step of 15 degrees; held, a turn.
+    RideLeft, "ride-left", "Left rein: tap for 15°, hold to turn", Ride, [plain(Key::ArrowLeft), plain(Key::A)];
+    /// A step of 15 degrees; held, a turn.
+    RideRight, "ride-right", "Right rein: tap for 15°, hold to turn", Ride, [plain(Key::ArrowRight), plain(Key::D)];
+    /// Stands.
+    RideHalt, "ride-halt", "Halt", Ride, [plain(Key::H)];
+    /// The speed chooses the gait.
+    RideAutomatic, "ride-automatic", "Gait as the speed asks", Ride, [plain(Key::Num0)];
+    /// This gait.
+    RideWalk, "ride-walk", "Walk", Ride, [plain(Key::Num1)];
+    /// This gait.
+    RideAmble, "ride-amble", "Amble", Ride, [plain(Key::Num2)];
+    /// This gait.
+    RideTrot, "ride-trot", "Trot", Ride, [plain(Key::Num3)];
+    /// This gait.
+    RideRack, "ride-rack", "Rack", Ride, [plain(Key::Num4)];
+    /// This gait.
+    RideCanter, "ride-canter", "Canter", Ride, [plain(Key::Num5)];
+    /// This gait.
+    RideGallop, "ride-gallop", "Gallop", Ride, [plain(Key::Num6)];
+    /// As the turn asks, left, right.
+    RideLead, "ride-lead", "Next lead", Ride, [plain(Key::L)];
+    /// One leap.
+    RideLeap, "ride-leap", "Leap", Ride, [plain(Key::Space)];
+    /// Stops time, or lets it go on.
+    RidePause, "ride-pause", "Pause or go on", Ride, [plain(Key::P)];
+    /// A sixtieth of a second later.
+    RideStepForward, "ride-step-forward", "Single step forward", Ride, [plain(Key::Period)];
+    /// A sixtieth of a second earlier.
+    RideStepBack, "ride-step-back", "Single step back", Ride, [plain(Key::Comma)];
+    /// Side, three-quarter, front, follow.
+    RideCamera, "ride-camera", "Next camera", Ride, [plain(Key::C)];
+    /// From the beginning.
+    RideReset, "ride-reset", "Begin again", Ride, [plain(Key::R)];
+    /// Back to the plate, or to the first page.
+    RideLeave, "ride-leave", "Leave the Ride page", Ride, [plain(Key::Escape)];
+
     /// All commands by name.
     Palette, "palette", "All commands…", Help, [command_shift(Key::P), command(Key::P)];
     /// Which key does what.
@@ -256,6 +320,33 @@ impl Command {
     /// The command of this name in the settings.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|command| command.description().id == id)
+    }
+
+    /// Where it acts.
+    pub fn scope(self) -> Scope {
+        let everywhere = matches!(
+            self,
+            Self::PagePlate
+                | Self::PageCalibrate
+                | Self::PagePose
+                | Self::PageGait
+                | Self::PagePlay
+                | Self::PageRide
+                | Self::Theme
+        );
+        match self.description().menu {
+            _ if everywhere => Scope::Everywhere,
+            Menu::File | Menu::Help => Scope::Everywhere,
+            Menu::Ride => Scope::Ride,
+            Menu::Edit | Menu::View | Menu::Plate | Menu::Pose | Menu::Gait => Scope::Plate,
+        }
+    }
+
+    /// Whether a key that is held down does it again and again.
+    pub fn repeats(self) -> bool {
+        let steps =
+            matches!(self, Self::RideFaster | Self::RideSlower | Self::RideStepForward | Self::RideStepBack);
+        steps || self.scope() != Scope::Ride
     }
 
     /// Name for people.
@@ -275,9 +366,11 @@ mod tests {
         let ids: BTreeSet<_> = Command::ALL.iter().map(|c| c.description().id).collect();
         let titles: BTreeSet<_> = Command::ALL.iter().map(|c| c.title()).collect();
         assert_eq!((ids.len(), titles.len()), (Command::ALL.len(), Command::ALL.len()));
-        let keys: Vec<_> = Command::ALL.iter().flat_map(|c| c.description().keys).collect();
-        for (at, key) in keys.iter().enumerate() {
-            assert!(!keys[..at].contains(key), "{key:?} is used twice");
+        for (at, command) in Command::ALL.iter().enumerate() {
+            for other in Command::ALL[..at].iter().filter(|other| other.scope().meets(command.scope())) {
+                let clash = command.description().keys.iter().find(|k| other.description().keys.contains(k));
+                assert_eq!(clash, None, "of {command:?} and {other:?}");
+            }
         }
         assert_eq!(Command::from_id("undo"), Some(Command::Undo));
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use crate::command::Command;
+use crate::command::{Command, Scope};
 
 /// Keys as chosen: the table's own where nothing else was chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -39,26 +39,31 @@ impl KeyMap {
         self.keys(command).first().map(to_words).unwrap_or_default()
     }
 
-    /// The command that a key does.
-    pub fn command(&self, key: &KeyboardShortcut) -> Option<Command> {
-        Command::ALL.iter().copied().find(|command| self.keys(*command).contains(key))
+    /// The command that a key does on the pages of a plate or on the Ride page.
+    pub fn command(&self, key: &KeyboardShortcut, on: Scope) -> Option<Command> {
+        let acts = |command: &Command| command.scope().meets(on) && self.keys(*command).contains(key);
+        Command::ALL.iter().copied().find(acts)
     }
 
-    /// Gives a command one key; the command that had it loses it and is returned.
+    /// Gives a command one key; the commands that had it where this one acts lose it, and the first of them is returned.
     pub fn choose(&mut self, command: Command, key: KeyboardShortcut) -> Option<Command> {
-        let loser = self.command(&key).filter(|other| *other != command);
-        if let Some(other) = loser {
-            let left = self.keys(other).iter().copied().filter(|k| *k != key).collect();
-            self.chosen.insert(other, left);
+        let has = |other: &Command| *other != command && self.keys(*other).contains(&key);
+        let losers: Vec<Command> = meeting(command).filter(has).collect();
+        for other in &losers {
+            let left = self.keys(*other).iter().copied().filter(|k| *k != key).collect();
+            self.chosen.insert(*other, left);
         }
         self.chosen.insert(command, vec![key]);
-        loser
+        losers.first().copied()
     }
 
     /// Gives a command its default keys again, as far as no other command has been given them.
     pub fn reset(&mut self, command: Command) {
         self.chosen.remove(&command);
-        let taken = |key: &KeyboardShortcut| self.chosen.values().flatten().any(|other| other == key);
+        let taken = |key: &KeyboardShortcut| {
+            let mut chosen = meeting(command).filter_map(|other| self.chosen.get(&other));
+            chosen.any(|keys| keys.contains(key))
+        };
         let free: Vec<_> = command.description().keys.iter().copied().filter(|key| !taken(key)).collect();
         if free.len() < command.description().keys.len() {
             self.chosen.insert(command, free);
@@ -69,6 +74,11 @@ impl KeyMap {
     pub fn reset_all(&mut self) {
         self.chosen.clear();
     }
+}
+
+/// Commands that act where this one does, itself among them.
+fn meeting(command: Command) -> impl Iterator<Item = Command> {
+    Command::ALL.iter().copied().filter(move |other| other.scope().meets(command.scope()))
 }
 
 /// `Ctrl+Shift+Z`.
@@ -169,11 +179,26 @@ mod tests {
         let mut map = KeyMap::default();
         let key = map.keys(Command::Undo)[0];
         assert_eq!(map.choose(Command::Palette, key), Some(Command::Undo));
-        assert_eq!((map.command(&key), map.keys(Command::Undo)), (Some(Command::Palette), [].as_slice()));
+        assert_eq!(map.command(&key, Scope::Plate), Some(Command::Palette));
+        assert_eq!(map.keys(Command::Undo), []);
         assert_eq!(KeyMap::from_words(&map.to_words()), map);
         map.reset(Command::Undo);
         assert_eq!(map.keys(Command::Undo), [], "its default is taken");
         map.reset_all();
-        assert_eq!(map.command(&key), Some(Command::Undo));
+        assert_eq!(map.command(&key, Scope::Plate), Some(Command::Undo));
+    }
+
+    #[test]
+    fn the_ride_page_and_the_plate_have_keys_of_their_own() {
+        let mut map = KeyMap::default();
+        let p = KeyboardShortcut::new(Modifiers::NONE, Key::P);
+        assert_eq!(map.command(&p, Scope::Ride), Some(Command::RidePause));
+        assert_eq!(map.command(&p, Scope::Plate), Some(Command::ToolGuided));
+        let v = KeyboardShortcut::new(Modifiers::NONE, Key::V);
+        assert_eq!(map.command(&v, Scope::Ride), None);
+        assert_eq!(map.choose(Command::RideHalt, v), None, "the plate's own V stays");
+        assert_eq!(map.choose(Command::Save, v), Some(Command::Visible));
+        assert_eq!((map.keys(Command::Visible), map.keys(Command::RideHalt)), ([].as_slice(), [].as_slice()));
+        assert_eq!(map.command(&v, Scope::Ride), Some(Command::Save));
     }
 }

@@ -21,6 +21,7 @@ pub mod palette;
 pub mod panels;
 pub mod picture;
 pub mod proposal;
+pub mod ride;
 pub mod second_pass;
 pub mod session;
 pub mod settings;

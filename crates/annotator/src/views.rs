@@ -7,6 +7,7 @@ pub mod gait_page;
 pub mod plate_page;
 pub mod play_page;
 pub mod pose_page;
+pub mod ride_page;
 pub mod sheet;
 pub mod strip;
 pub mod tabs;

@@ -2,6 +2,7 @@
 
 pub mod commands;
 pub mod fit_gaits;
+pub mod ride_script;
 pub mod specimens;
 
 use std::process::ExitCode;

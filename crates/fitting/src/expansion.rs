@@ -3,17 +3,23 @@
 //! The stance time of each pair follows its law; swing keeps the duration of the capture, so that the stride becomes
 //! their sum and the duty factor falls with speed. Strikes keep their phases. Each toe's path relative to its shoulder
 //! or hip is scaled by `D'/D` along the track and over the ground; a standing toe stands still on the ground exactly, leaves it
-//! and comes to it without a jerk, and the leg is solved anew by damped least squares. Where a leg cannot reach, the body
-//! is lowered: the body gives way, not the foot.
+//! and comes to it without a jerk, and the leg is solved anew by damped least squares. Where a leg would have to
+//! be stretched to its last hundredth, a toe in the air is drawn in and for a standing one the body is lowered: the body gives way, not
+//! the foot.
 
 use muybridge_core::{CURVE_SAMPLES, Contact, Limb, Pair, Pose, Provenance, Skeleton, Stride};
 
 use crate::leg_reach::{LegBends, Willingness, leg_bends, reach_from};
 
-/// A toe in the air may miss its place by this before the body gives way, m; less as it nears the ground, where it must not.
-const SLACK_M: f64 = 0.08;
-/// What a leg that could not reach is left to spare, m: a leg stretched to its last millimetre jerks.
-const SPARE_M: f64 = 0.004;
+/// Greatest stretch of a standing leg before the body gives way, root to toe as a share of its bones' lengths. Joints turn ever faster as
+/// a leg comes to its last hundredth; the plates that stand for their gaits show standing legs stretched to 0.983 at most.
+const STRETCH: f64 = 0.985;
+/// Width of the rounding with which a leg in the air comes to that stretch, as a share of its length.
+const STRETCH_EDGE: f64 = 0.05;
+/// Samples on either side of a stance over which a toe that is held near its print comes to yield to the leg's stretch.
+const YIELDING_SAMPLES: f64 = 3.5;
+/// A toe in the air that yields may be this far beyond the leg's stretch before the body gives way, m.
+const SLACK_M: f64 = 0.06;
 /// A standing toe farther than this from its print makes the body give way, m.
 const REACH_TOLERANCE_M: f64 = 2e-4;
 /// Rounds of lowering the body; each takes away what the worst leg lacks and a little more.
@@ -46,7 +52,7 @@ pub struct Pace {
     pub stance_ratios: [f64; 2],
 }
 
-/// A captured stride at another pace; none where a leg cannot reach even with the body lowered.
+/// A captured stride at another pace; none where a standing leg cannot reach even with the body lowered.
 pub fn expand(captured: &Stride, reference: &Skeleton, pace: Pace) -> Option<Stride> {
     let timing = Timing::new(captured, pace);
     let skeleton = captured.skeleton(reference);
@@ -139,6 +145,8 @@ struct Place {
     at_m: [f64; 2],
     /// 1 in stance, falling to 0 over the ends of the swing.
     load: f64,
+    /// How far the toe yields where the leg would be stretched too far: 0 in stance, 1 in the air.
+    yielding: f64,
 }
 
 impl ToePath {
@@ -170,18 +178,21 @@ impl ToePath {
                 let since = (phase - strike).rem_euclid(1.0);
                 let turns_m = (phase - strike - since) * stride_length_m;
                 if since <= duty {
-                    return Place { at_m: [print_m + turns_m, 0.0], load: 1.0 };
+                    return Place { at_m: [print_m + turns_m, 0.0], load: 1.0, yielding: 0.0 };
                 }
                 let share = (since - duty) / (1.0 - duty);
                 let free = swing.at(share, similar(strike + since));
                 // The curve between samples bends over a contact's edge, so a sample next to it is held near the print.
                 let (left, to_come) = (since - duty, 1.0 - since);
                 let print = [print_m + if left < to_come { 0.0 } else { stride_length_m }, 0.0];
-                let away = smooth(left.min(to_come) * CURVE_SAMPLES as f64 / HELD_SAMPLES);
+                let samples = left.min(to_come) * CURVE_SAMPLES as f64;
+                let away = smooth(samples / HELD_SAMPLES);
                 let [x, y] = [0, 1].map(|axis| print[axis] + away * (free[axis] - print[axis]));
-                let y = cleared(y, share);
-                let load = 1.0 - smooth(share.min(1.0 - share) / EASING);
-                Place { at_m: [x + turns_m, y], load }
+                Place {
+                    at_m: [x + turns_m, cleared(y, share)],
+                    load: 1.0 - smooth(share.min(1.0 - share) / EASING),
+                    yielding: smooth(samples / YIELDING_SAMPLES),
+                }
             })
             .collect();
         Self { places, print_m }
@@ -246,7 +257,8 @@ fn ease(share: f64) -> f64 {
     share * rest * rest
 }
 
-/// Solves a leg's five joints for every sample of its path; returns what the worst of those at or near the ground lacks, m.
+/// Solves a leg's five joints for every sample of its path; returns by how much the worst of those at or near the ground is stretched too
+/// far or misses its place, m.
 ///
 /// Samples are taken in turn from the middle of the swing, each beginning with most of what the last one was turned by, so
 /// that neighbours find neighbouring solutions.
@@ -262,13 +274,10 @@ fn solve_leg(solved: &mut Stride, from: &Stride, skeleton: &Skeleton, limb: Limb
         let captured = leg_bends(&pose, limb);
         let start = std::array::from_fn(|joint| captured[joint] + CARRIED * turned[joint]);
         let willing = Willingness::under(limb, place.load);
-        let (mut bends, left_m) = reach_from(start, &pose, skeleton, limb, willing, place.at_m);
-        lacking_m = lacking_m.max(left_m - SLACK_M * (1.0 - place.load));
-        if place.load < 1.0 && left_m > REACH_TOLERANCE_M {
-            // In the air a leg need not be stretched to its utmost for a path that was made for the ground.
-            let nearer = pulled_in(&pose, skeleton, limb, place.at_m, left_m);
-            bends = reach_from(start, &pose, skeleton, limb, willing, nearer).0;
-        }
+        let reach = Reach::new(&pose, skeleton, limb, place.at_m);
+        let at_m = reach.drawn_in(place.yielding);
+        let (bends, left_m) = reach_from(start, &pose, skeleton, limb, willing, at_m);
+        lacking_m = lacking_m.max(left_m.max(reach.beyond_m()) - SLACK_M * place.yielding);
         turned = std::array::from_fn(|joint| bends[joint] - captured[joint]);
         for (joint, bend) in bends.iter().enumerate() {
             solved.curves.bends_rad[limb.first_bone() + joint][k] = *bend as f32;
@@ -277,18 +286,67 @@ fn solve_leg(solved: &mut Stride, from: &Stride, skeleton: &Skeleton, limb: Limb
     lacking_m
 }
 
-/// A place out of reach drawn to the leg's root until a leg that lacked so much has a little to spare.
-fn pulled_in(pose: &Pose, skeleton: &Skeleton, limb: Limb, at_m: [f64; 2], left_m: f64) -> [f64; 2] {
-    let base = pose.joints(skeleton).bases[limb.first_bone()];
-    let root = [f64::from(base.x), f64::from(base.y)];
-    let distance_m = (at_m[0] - root[0]).hypot(at_m[1] - root[1]);
-    let share = 1.0 - (left_m + SPARE_M) / distance_m;
-    [0, 1].map(|axis| root[axis] + share * (at_m[axis] - root[axis]))
+/// A place seen from the root of a leg.
+struct Reach {
+    root_m: [f64; 2],
+    at_m: [f64; 2],
+    distance_m: f64,
+    leg_m: f64,
+}
+
+impl Reach {
+    fn new(pose: &Pose, skeleton: &Skeleton, limb: Limb, at_m: [f64; 2]) -> Self {
+        let bones = limb.first_bone()..=limb.hoof_bone();
+        let base = pose.joints(skeleton).bases[limb.first_bone()];
+        let root_m = [f64::from(base.x), f64::from(base.y)];
+        let distance_m = (at_m[0] - root_m[0]).hypot(at_m[1] - root_m[1]);
+        let leg_m = skeleton.bones[bones].iter().map(|bone| f64::from(bone.length_m)).sum();
+        Self { root_m, at_m, distance_m, leg_m }
+    }
+
+    /// How far the place is beyond [`STRETCH`], m; negative within it.
+    fn beyond_m(&self) -> f64 {
+        self.distance_m - STRETCH * self.leg_m
+    }
+
+    /// The place drawn towards the root, all the way to what a leg reaches at ease where it yields fully. It depends on the place
+    /// alone and without a corner, so that neighbouring samples are drawn in alike.
+    fn drawn_in(&self, yielding: f64) -> [f64; 2] {
+        let half_m = 0.5 * self.beyond_m();
+        let over_m = half_m + half_m.hypot(0.5 * STRETCH_EDGE * self.leg_m);
+        let share = 1.0 - yielding * over_m / self.distance_m;
+        [0, 1].map(|axis| self.root_m[axis] + share * (self.at_m[axis] - self.root_m[axis]))
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use muybridge_core::{Database, MPS_PER_MPH};
+
     use super::*;
+    use crate::database_checks::{Check, check_database};
+
+    #[test]
+    fn no_joint_snaps_and_no_hoof_slides_when_a_gallop_or_canter_is_made_faster() {
+        let (database, reference) = (Database::embedded(), Skeleton::reference());
+        let paces = [
+            ("sallie-gardner-1878", 40.0, 0.91),
+            ("sallie-gardner-1878", 36.0, 1.0),
+            ("flode-holden-614", 25.0, 0.72),
+        ];
+        for (plate, mph, ratio) in paces {
+            let captured = database.strides.iter().find(|stride| stride.id == plate).unwrap();
+            let pace = Pace { speed_m_s: mph * MPS_PER_MPH, stance_ratios: [ratio; 2] };
+            let made = Stride { id: "made".into(), ..expand(captured, &reference, pace).unwrap() };
+            let pair = Database { strides: vec![captured.clone(), made], ..database.clone() };
+            let found = check_database(&pair, &reference).into_iter().filter(|d| d.stride == "made");
+            let wrong: Vec<String> = found
+                .filter(|d| matches!(d.check, Check::BendJump | Check::ToeSlides | Check::BendLimit))
+                .map(|d| d.to_string())
+                .collect();
+            assert_eq!(wrong, [""; 0], "{plate} at {mph} mph");
+        }
+    }
 
     #[test]
     fn easing_takes_the_speed_away_and_nothing_else() {

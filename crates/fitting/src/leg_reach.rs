@@ -21,6 +21,10 @@ const FREE_FETLOCK_RAD: f64 = 1.6;
 /// not touch it.
 const FETLOCK_HEIGHT: f64 = 0.2;
 
+/// Angles of a cannon are counted from minus this, rad: from 45 degrees over forward, where none ever points. One that hangs down is at
+/// minus 90 degrees, one folded back past the horizontal at less than minus 180.
+const WRAP_RAD: f64 = 1.75 * std::f64::consts::PI;
+
 /// Bends of a leg from its root (scapula, pelvis) to its hoof, rad.
 pub(crate) type LegBends = [f64; 5];
 
@@ -162,9 +166,8 @@ impl Leg {
         let pastern = [places[5][0] - places[4][0], places[5][1] - places[4][1]];
         let cannon_angle = pastern[1].atan2(pastern[0]) - bends[4];
         let height = FETLOCK_HEIGHT - 2.0 * (1.0 - load);
-        // The cannon hangs down, the pastern runs on forward: angles counted from there do not wrap.
-        let hanging =
-            (cannon_angle + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+        // A folded leg carries its cannon back past the horizontal: were angles counted from there, the limit would jump by a turn.
+        let hanging = (cannon_angle + WRAP_RAD).rem_euclid(std::f64::consts::TAU) - WRAP_RAD;
         -height.clamp(-1.0, 1.0).asin() - hanging
     }
 
@@ -225,6 +228,20 @@ mod tests {
             reach_from(start, &pose, &skeleton, Limb::LF, willingness(Limb::LF, loaded), wanted).0[3]
         };
         assert!(carpus(true).abs() < 0.05 && carpus(true).abs() < carpus(false).abs());
+    }
+
+    #[test]
+    fn the_fetlock_s_limit_does_not_jump_where_a_folding_cannon_passes_the_horizontal() {
+        let skeleton = Skeleton::reference();
+        let leg = Leg::new(&Pose::standing(&skeleton), &skeleton, Limb::LF);
+        // The bend of the radius that lays the cannon back and level, and a little to either side.
+        let at = |beyond: f64| {
+            let mut bends: LegBends = [-1.0, -1.3, 0.3, 0.0, -0.1];
+            bends[3] = -std::f64::consts::PI - leg.parent_angle - bends[..3].iter().sum::<f64>() - beyond;
+            leg.fetlock_over_ground(&leg.joints(&bends), &bends, 0.2)
+        };
+        assert!((at(0.01) - at(-0.01) - 0.02).abs() < 1e-6, "{} and {}", at(-0.01), at(0.01));
+        assert!(at(0.5) > FREE_FETLOCK_RAD, "a leg in the air is not held");
     }
 
     #[test]

@@ -1,5 +1,5 @@
 //! Pixels: loading and fetching plates, finding panels, seeing horse and wall in them, tracking points from panel to
-//! panel, and drawing specimen plates whose truth is known.
+//! panel, drawing specimen plates whose truth is known, and drawing the horse in three dimensions ([`figure`]).
 //!
 //! Spaces: *plate px* (origin at the top left of the image file, x right, y down, the centre of the first pixel at
 //! (0.5, 0.5)) and *panel px* (the same for a [`PanelView`], one photograph cut out and squared up). Pictures are grey: the
@@ -9,6 +9,7 @@
 pub mod acquire;
 mod cutouts;
 pub mod fetch;
+pub mod figure;
 mod frames;
 mod panel_view;
 mod picture;

@@ -4,6 +4,7 @@ use egui::Context;
 
 use super::dialogs::{After, Dialog};
 use super::{Annotator, Command};
+use crate::command::Scope;
 use crate::exchange::ExchangeWindow;
 use crate::key_editor::KeyEditor;
 use crate::palette::Palette;
@@ -17,10 +18,23 @@ impl Annotator {
         use Command as C;
         let always = matches!(
             command,
-            C::Open | C::Browse | C::Quit | C::Theme | C::FitAlways | C::Palette | C::Keys | C::Tour
+            C::Open
+                | C::Browse
+                | C::Quit
+                | C::Theme
+                | C::PageRide
+                | C::FitAlways
+                | C::Palette
+                | C::Keys
+                | C::Tour
         );
         if always || (command == C::OpenSpecimen && self.places.state.is_some()) {
             return None;
+        }
+        match (command.scope(), self.ride.is_open()) {
+            (Scope::Ride, _) => return self.ride.why_not(command),
+            (Scope::Plate, true) => return Some("Leave the Ride page first"),
+            _ => {}
         }
         let Some(session) = &self.session else { return Some("Open a plate first") };
         session_why_not(session, command)
@@ -58,10 +72,11 @@ impl Annotator {
         if let Some(session) = &mut self.session {
             session.commit();
         }
-        if self.run_on_program(context, command) {
+        if self.run_on_program(context, command) || self.ride.run(command) {
             return;
         }
         let Some(session) = &mut self.session else { return };
+        self.ride.close();
         if !run_on_view(session, command) {
             session.run(context, command, &mut self.messages);
         }
@@ -86,7 +101,11 @@ impl Annotator {
             }
             C::Palette => self.palette = Some(Palette::default()),
             C::Keys => self.key_editor = Some(KeyEditor::default()),
-            C::Tour => self.tour = Some(Tour::default()),
+            C::Tour => {
+                self.ride.close();
+                self.tour = Some(Tour::default());
+            }
+            C::PageRide => self.ride.open(context),
             C::OpenSpecimen => self.leave(context, After::OpenSpecimen),
             C::SecondPass => self.second_pass(context),
             _ => return false,

@@ -1,46 +1,25 @@
 //! The figure as a person meets it: in frames without a window.
 
-use egui::{
-    Color32, ColorImage, Context, Event, Modifiers, MouseWheelUnit, PointerButton, Pos2, RawInput, Rect, Vec2,
-};
+use egui::{Context, Event, Modifiers, MouseWheelUnit, PointerButton, Pos2, RawInput, Rect, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
-use muybridge_core::{BONE_COUNT, Database, Gait, Limb, Pose, Side, Skeleton};
+use muybridge_core::{BONE_COUNT, Pose, Side, Skeleton};
+use muybridge_imaging::figure::{Terrain, Trace};
 
-use super::camera::Camera;
-use super::{FigureColors, FigurePose, FigureView, NamedView, scene};
+use super::{FigureColors, FigurePose, FigureView, Follow, NamedView, SceneParts};
 
 const COLORS: FigureColors = FigureColors {
-    near: Color32::from_rgb(230, 120, 40),
-    off: Color32::from_rgb(60, 130, 220),
-    trunk: Color32::from_rgb(176, 160, 146),
+    near: [230, 120, 40],
+    off: [60, 130, 220],
+    trunk: [176, 160, 146],
+    ground: [90, 90, 90],
+    sky: None,
 };
-const SIZE: [usize; 2] = [360, 260];
 
 fn standing() -> FigurePose {
     let skeleton = Skeleton::reference();
     FigurePose { joints: Pose::standing(&skeleton).joints(&skeleton), standing: [true; 4], ghost: false }
-}
-
-fn picture(poses: &[FigurePose], yaw: f32) -> ColorImage {
-    let size = glam::Vec2::new(SIZE[0] as f32, SIZE[1] as f32);
-    let camera = Camera::new(Vec3::new(0.6, 1.08, 0.0), [yaw, 0.16, 1.0], 1.0, size);
-    scene::render(poses, &camera, SIZE, true, &COLORS, Side::Right)
-}
-
-fn covered(picture: &ColorImage) -> usize {
-    picture.pixels.iter().filter(|pixel| pixel.a() > 0).count()
-}
-
-/// Opaque pixels whose colour is nearest to a limb's: orange or blue.
-fn limb_pixels(picture: &ColorImage) -> [usize; 2] {
-    let opaque = || picture.pixels.iter().filter(|pixel| pixel.a() == 255);
-    let margin = |a: u8, b: u8| i32::from(a) - i32::from(b);
-    [
-        opaque().filter(|pixel| margin(pixel.r(), pixel.b()) > 45).count(),
-        opaque().filter(|pixel| margin(pixel.b(), pixel.r()) > 45).count(),
-    ]
 }
 
 fn frame(
@@ -61,38 +40,6 @@ fn frame(
     // The fonts.
     uploads.remove(&egui::TextureId::default());
     uploads.len()
-}
-
-#[test]
-fn a_standing_horse_fills_a_good_part_of_the_picture_and_none_of_its_edge() {
-    let picture = picture(&[standing()], 0.0);
-    let share = covered(&picture) as f32 / (SIZE[0] * SIZE[1]) as f32;
-    assert!((0.12..0.5).contains(&share), "{share}");
-    for x in 0..SIZE[0] {
-        assert_eq!(picture[(x, 0)].a(), 0, "cut off at the top at {x}");
-        assert_eq!(picture[(x, SIZE[1] - 1)].a(), 0, "cut off at the bottom at {x}");
-    }
-}
-
-#[test]
-fn the_nearer_limbs_hide_the_farther_ones_from_either_side() {
-    let right = limb_pixels(&picture(&[standing()], 0.0));
-    let left = limb_pixels(&picture(&[standing()], std::f32::consts::PI));
-    assert!(right[0] > 2 * right[1], "{right:?}");
-    assert!(left[1] > 2 * left[0], "{left:?}");
-}
-
-#[test]
-fn equal_poses_give_equal_pixels() {
-    assert_eq!(picture(&[standing()], 0.7), picture(&[standing()], 0.7));
-}
-
-#[test]
-fn a_ghost_is_seen_through() {
-    let ghost = FigurePose { ghost: true, ..standing() };
-    let alone = picture(&[ghost], 0.0);
-    assert!(covered(&alone) > 500 && covered(&alone) < covered(&picture(&[standing()], 0.0)) / 2);
-    assert!(alone.pixels.iter().all(|pixel| pixel.a() < 200));
 }
 
 #[test]
@@ -184,58 +131,41 @@ fn the_buttons_are_found_by_name_and_go_to_their_views() {
 }
 
 #[test]
-fn a_new_pose_takes_a_few_milliseconds() {
-    let database = Database::embedded();
-    let stride = database.strides_of(Gait::Gallop).next().unwrap();
-    let skeleton = stride.skeleton(&Skeleton::reference());
-    let poses: Vec<FigurePose> = (0..12)
-        .map(|i| {
-            let mut pose = stride.pose(i as f32 / 12.0);
-            pose.root_in_world.x = 0.0;
-            FigurePose {
-                joints: pose.joints(&skeleton),
-                standing: stride.support(i as f32 / 12.0),
-                ghost: false,
-            }
-        })
-        .collect();
-    let timed = |pose: &FigurePose| {
-        let start = std::time::Instant::now();
-        assert!(covered(&picture(&[*pose], 0.0)) > 5000);
-        start.elapsed()
+fn the_view_turns_with_the_horse_and_stays_above_the_ground() {
+    let (ctx, mut view) = (Context::default(), FigureView::new(Side::Right));
+    let steep = |x: f32, _: f32| -x;
+    let way = [Vec3::ZERO, Vec3::X];
+    let traces = [Trace { points: &way, color: [200; 3] }];
+    let figures = [standing()];
+    let parts = SceneParts {
+        figures: &figures,
+        terrain: Terrain::Height(&steep),
+        terrain_version: 1,
+        grid_m: 1.0,
+        traces: &traces,
+        support_polygon: true,
+        colors: &COLORS,
+        follow: Follow { at: Vec3::ZERO, heading_rad: 0.0, size: 1.0 },
     };
-    // The quickest: the others waited for something.
-    let quickest = poses.iter().map(timed).min().unwrap();
-    println!("a pose at {SIZE:?}: {quickest:?}");
-    assert!(quickest.as_secs_f64() < 0.1);
-    assert!(Limb::ALL.iter().all(|limb| poses.iter().any(|pose| pose.standing[limb.index()])));
-}
-
-#[test]
-#[ignore = "writes pictures to look at into the folder FIGURE_PICTURES"]
-fn pictures() {
-    let Some(folder) = std::env::var_os("FIGURE_PICTURES") else { return };
-    let database = Database::embedded();
-    let stride = database.strides_of(Gait::Gallop).next().unwrap();
-    let skeleton = stride.skeleton(&Skeleton::reference());
-    let mut sheet = image::RgbImage::from_pixel(360 * 4, 260 * 4, image::Rgb([30, 30, 34]));
-    let mut put = |column: usize, row: usize, drawn: &ColorImage| {
-        for (i, pixel) in drawn.pixels.iter().enumerate() {
-            let at = sheet.get_pixel_mut((column * 360 + i % 360) as u32, (row * 260 + i / 360) as u32);
-            let over = Color32::from_rgb(at[0], at[1], at[2]).blend(*pixel);
-            at.0 = [over.r(), over.g(), over.b()];
-        }
+    view.look(NamedView::Follow);
+    let camera = |view: &FigureView, heading_rad: f32| {
+        view.camera_of(&SceneParts { follow: Follow { heading_rad, ..parts.follow }, ..parts }, [300, 200])
     };
-    let at = |phase: f32, ghost: bool| {
-        let mut pose = stride.pose(phase);
-        pose.root_in_world.x = 0.0;
-        FigurePose { joints: pose.joints(&skeleton), standing: stride.support(phase), ghost }
+    let eye = camera(&view, 0.0).eye();
+    assert!(eye.x < -1.0 && eye.y > -eye.x, "behind the horse and above the hill: {eye}");
+    let eye = camera(&view, std::f32::consts::FRAC_PI_2).eye();
+    assert!(eye.z > 5.0 && eye.x.abs() < 0.5, "a horse that faces -Z is seen from +Z: {eye}");
+    let mut uploads = |version: u64| {
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, Vec2::splat(400.0))),
+            ..Default::default()
+        };
+        let parts = SceneParts { terrain_version: version, ..parts };
+        let mut output = ctx.run_ui(input, |ui| _ = view.ui_scene(ui, Vec2::new(300.0, 200.0), &parts));
+        let mut uploads = std::mem::take(&mut output.textures_delta.set);
+        output.textures_delta.free.clear();
+        uploads.remove(&egui::TextureId::default());
+        uploads.len()
     };
-    for (row, yaw) in [0.0, 0.8, 1.57, 3.6].into_iter().enumerate() {
-        put(0, row, &picture(&[standing()], yaw));
-        put(1, row, &picture(&[at(0.05, false)], yaw));
-        put(2, row, &picture(&[at(0.4, false)], yaw));
-        put(3, row, &picture(&[at(0.7, false), at(0.6, true), at(0.8, true)], yaw));
-    }
-    sheet.save(std::path::Path::new(&folder).join("figure.png")).unwrap();
+    assert_eq!([uploads(1), uploads(1), uploads(2)], [1, 0, 1], "drawn anew for another terrain only");
 }

@@ -1,6 +1,6 @@
 //! The small three-dimensional figure that can be turned.
 
-use egui::{Color32, Ui, vec2};
+use egui::{Ui, vec2};
 use muybridge_capture::{NearOff, StanceLabel};
 use muybridge_core::{Joints, Limb, Pose, Skeleton};
 use muybridge_fitting::layout::{BENDS, PITCH, ROOT_X, ROOT_Y, SHARED, SLIDES, log_length};
@@ -11,7 +11,9 @@ use crate::figure::{FigureColors, FigurePose};
 use crate::session::Session;
 
 /// Neck, head and barrel: bay.
-const TRUNK: Color32 = Color32::from_rgb(176, 128, 84);
+const TRUNK: [u8; 3] = [176, 128, 84];
+/// The ground: between a dark and a light window.
+const GROUND: [u8; 3] = [126, 120, 112];
 
 /// The skeleton of a plate's animal: the reference with the plate's lengths.
 pub fn skeleton(reference: &Skeleton, lengths: &[f64; SHARED]) -> Skeleton {
@@ -29,13 +31,15 @@ pub fn joints(skeleton: &Skeleton, pose: &PanelPose) -> Joints {
         world_from_root: glam::Quat::from_rotation_z(pose[PITCH] as f32),
         bends_rad: std::array::from_fn(|i| pose[BENDS + i] as f32),
         scapula_slides_m: [pose[SLIDES] as f32, pose[SLIDES + 1] as f32],
+        ..Pose::default()
     };
     pose.joints(skeleton)
 }
 
 /// The colours of the window.
 pub fn figure_colors() -> FigureColors {
-    FigureColors { near: colors::NEAR, off: colors::OFF, trunk: TRUNK }
+    let [near, off] = [colors::NEAR, colors::OFF].map(|color| [color.r(), color.g(), color.b()]);
+    FigureColors { near, off, trunk: TRUNK, ground: GROUND, sky: None }
 }
 
 /// The present panel's skeleton, as far as there are points.

@@ -30,7 +30,11 @@ pub(super) struct Canvas {
 
 impl Canvas {
     pub(super) fn new(width: u32, height: u32, background: Rgb<u8>) -> Self {
-        let picture = RgbImage::from_pixel(width, height, background);
+        Self::of(RgbImage::from_pixel(width, height, background))
+    }
+
+    /// To draw on a picture that is there.
+    pub(super) fn of(picture: RgbImage) -> Self {
         Self { picture, font: FontRef::try_from_slice(epaint_default_fonts::HACK_REGULAR).ok() }
     }
 

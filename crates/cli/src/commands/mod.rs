@@ -5,6 +5,7 @@ mod average;
 mod canvas;
 mod contact_sheet;
 mod exchange;
+mod motion;
 mod plates;
 mod tracks;
 
@@ -29,6 +30,9 @@ enum Command {
     Annotations(annotations::AnnotationsCommand),
     /// Average the strides of a tracked clip into one, written as a plate to fit.
     Average(average::AverageArguments),
+    /// The horse in motion: `play`, `strip`, `gif`, `gaits`.
+    #[command(subcommand)]
+    Motion(motion::MotionCommand),
     /// Which plates there are: `list`.
     #[command(subcommand)]
     Plates(plates::PlatesCommand),
@@ -42,6 +46,7 @@ pub fn run(arguments: &Muybridge) -> ExitCode {
     let result = match &arguments.command {
         Command::Annotations(command) => command.run(),
         Command::Average(arguments) => arguments.run(),
+        Command::Motion(command) => command.run(),
         Command::Plates(command) => command.run(),
         Command::Tracks(command) => command.run(),
     };

@@ -6,6 +6,7 @@
 mod biomechanics;
 mod body;
 mod feet;
+mod jumps;
 mod known;
 #[cfg(test)]
 mod specimen;
@@ -43,6 +44,8 @@ pub enum Check {
     NotClosed,
     /// Every joint stays within the skeleton's limits.
     BendLimit,
+    /// No bend of a made stride changes much faster than those of the stride it comes from.
+    BendJump,
     /// Every bone keeps its length over the stride and at every speed.
     BoneLength,
     /// Share of the stride a hoof is down.
@@ -93,6 +96,7 @@ impl Check {
             Self::NotFinite => "not finite",
             Self::NotClosed => "not closed",
             Self::BendLimit => "bend limit",
+            Self::BendJump => "bend jump",
             Self::BoneLength => "bone length",
             Self::DutyFactor => "duty factor",
             Self::StanceTime => "stance time",
@@ -145,6 +149,7 @@ pub fn check_database(database: &Database, reference: &Skeleton) -> Vec<Deviatio
         deviations.extend(check_stride(stride, reference));
     }
     deviations.extend(body::check_families(database));
+    deviations.extend(jumps::check(database, reference));
     deviations.extend(biomechanics::check_trends(database));
     deviations
 }
@@ -195,14 +200,19 @@ impl<'a> Subject<'a> {
 
     /// A bone's name with its leg.
     fn bone_name(&self, bone: usize) -> String {
-        let limb = Skeleton::limb_of(bone).map_or("", Limb::abbreviation);
-        format!("{limb} {}", self.skeleton.bones[bone].name).trim().to_string()
+        bone_name(&self.skeleton, bone)
     }
 
     /// A deviation if `value` is outside `allowed`; `text` says what it is, its unit and its source.
     fn require(&self, check: Check, value: f64, allowed: [f64; 2], text: String) -> Option<Deviation> {
         require(self.stride, check, value, allowed, text)
     }
+}
+
+/// A bone's name with its leg.
+fn bone_name(skeleton: &Skeleton, bone: usize) -> String {
+    let limb = Skeleton::limb_of(bone).map_or("", Limb::abbreviation);
+    format!("{limb} {}", skeleton.bones[bone].name).trim().to_string()
 }
 
 /// A deviation if `value` is outside `allowed` or no number.

@@ -20,6 +20,7 @@ mod summary;
 mod supports;
 #[cfg(test)]
 mod tests;
+pub mod time_warping_plot;
 
 use muybridge_capture::{Keypoint, NearOff};
 use muybridge_core::{Database, Skeleton};
