@@ -1,13 +1,15 @@
 //! The body gives way, not the foot: it is drawn to feet that are out of reach, and every leg is solved so that a standing hoof is
 //! exactly where it struck (spec 6.3).
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3, Vec3Swizzles};
 
 use super::feet::Wanted;
+use super::ground::Ground;
 use super::repertoire::Repertoire;
 use super::retarget::leg_bends;
 use super::rig::{Aim, Girdle, Reached};
 use super::state::HorseState;
+use super::terrain::height_m;
 use super::track::lagged;
 use crate::limb::Limb;
 use crate::pose::Pose;
@@ -24,6 +26,8 @@ const THERE_M: f32 = 2e-5;
 const PULLS: usize = 3;
 /// Rounds of pulling it to legs whose joints, not whose length, stop them.
 const SOLUTIONS: usize = 8;
+/// Share of its greatest length a leg strikes the ground with at most, unless the body is too high for that.
+const COMFORT: f32 = 0.985;
 /// A pull that leaves more than this of what was lacking is not worth it.
 const WORTH: f32 = 0.8;
 /// How much more than what is lacking the body is pulled then.
@@ -41,6 +45,36 @@ fn pull_to(place: Vec3, lacking_m: f32) -> Vec3 {
 }
 
 impl HorseState {
+    /// Draws prints that are just being made to where the legs can reach without pulling the body.
+    pub(super) fn settle(
+        &mut self,
+        repertoire: &Repertoire,
+        pose: &Pose,
+        wanted: &mut [Wanted; 4],
+        stood: [bool; 4],
+        ground: &impl Ground,
+    ) {
+        let strikes: [bool; 4] = std::array::from_fn(|limb| self.feet[limb].is_planted && !stood[limb]);
+        if !strikes.contains(&true) {
+            return;
+        }
+        let girdles = repertoire.rig.girdles(pose);
+        for limb in (0..4).filter(|&limb| strikes[limb]) {
+            let joint = pose.root_in_world + self.pull_m + pose.world_from_root * girdles[limb].joint;
+            let print = &mut self.feet[limb].print;
+            let away = (*print - joint.as_dvec3()).as_vec3();
+            let reach_m = COMFORT * repertoire.rig.legs[limb].span_m;
+            let (level_m, most_m) = (away.xz().length(), (reach_m * reach_m - away.y * away.y).sqrt());
+            if level_m > most_m {
+                let nearer = away.xz() * (1.0 - most_m / level_m);
+                let at = DVec2::new(print.x, print.z) - nearer.as_dvec2();
+                let height = height_m(ground, at).map_or(print.y, f64::from);
+                *print = DVec3::new(at.x, height, at.y);
+                wanted[limb].toe = *print;
+            }
+        }
+    }
+
     /// Draws the body to feet that are out of reach, and solves the legs. Only a foot that no place of the body would serve leaves the
     /// ground.
     pub(super) fn stand(
@@ -102,25 +136,24 @@ impl HorseState {
     ) -> Vec3 {
         let root = pose.root_in_world.as_dvec3();
         let mut pull = self.pull_m * (1.0 - lagged(dt_s, RETURNING_S));
-        let places: [Vec3; 4] = std::array::from_fn(|limb| {
-            (wanted[limb].bears_at - root).as_vec3() - pose.world_from_root * girdles[limb].joint
-        });
+        let joints = girdles.map(|girdle| pose.world_from_root * girdle.joint);
+        for limb in 0..4 {
+            // What is to come, softly, so that a leg that comes to its limit does not jerk the body.
+            let place = (wanted[limb].bears_at - root).as_vec3() - joints[limb];
+            let lacking = place.length() - repertoire.rig.legs[limb].span_m;
+            let lacking = 0.5 * (lacking + (lacking * lacking + SOFT_M * SOFT_M).sqrt());
+            let done = pull.dot(place.normalize_or_zero());
+            pull += pull_to(place, (wanted[limb].bears * lacking - done).max(0.0));
+        }
         for _ in 0..PULLS {
             let mut is_pulled = false;
-            for limb in 0..4 {
-                let (place, span_m) = (places[limb], repertoire.rig.legs[limb].span_m);
-                let more = if wanted[limb].bears >= 1.0 {
-                    let lacking = (place - pull).length() - span_m;
-                    if lacking > 0.0 { pull_to(place - pull, lacking) } else { Vec3::ZERO }
-                } else {
-                    // Softly, so that a leg that comes to its limit does not jerk the body.
-                    let lacking = place.length() - span_m;
-                    let lacking = 0.5 * (lacking + (lacking * lacking + SOFT_M * SOFT_M).sqrt());
-                    let done = pull.dot(place.normalize_or_zero());
-                    pull_to(place, (wanted[limb].bears * lacking - done).max(0.0))
-                };
-                is_pulled |= more != Vec3::ZERO;
-                pull += more;
+            for limb in (0..4).filter(|&limb| wanted[limb].is_planted) {
+                let place = (wanted[limb].toe - root).as_vec3() - joints[limb] - pull;
+                let lacking = place.length() - repertoire.rig.legs[limb].span_m;
+                if lacking > 0.0 {
+                    pull += pull_to(place, lacking);
+                    is_pulled = true;
+                }
             }
             if !is_pulled {
                 break;

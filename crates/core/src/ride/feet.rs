@@ -15,6 +15,8 @@ use super::warp::Warp;
 
 /// Share of the swing by which a foot that steps up has risen to the new height; one that steps down keeps the old for as long.
 const RISEN_BY: f32 = 0.6;
+/// Share of the stance from which the body makes ready for the foot to leave.
+const LEAVING_FROM: f32 = 0.3;
 /// Share of the swing from which the body makes ready for the strike.
 const HEEDED_FROM: f32 = 0.35;
 /// Places at which a foot in the air feels for risers, ahead of it, metres of a reference horse.
@@ -93,9 +95,11 @@ pub(super) struct Wanted {
     pub(super) heading_rad: f64,
     /// 1 in stance and near it.
     pub(super) load: f32,
-    /// The place that the leg has to reach: its print, or the next one as the horse will see it when the foot strikes.
+    pub(super) is_planted: bool,
+    /// The place that the leg will have to reach next: its print as the horse will see it when the foot leaves, or the next one when
+    /// it strikes.
     pub(super) bears_at: DVec3,
-    /// How much the body has to heed that, 0 to 1.
+    /// How much the body makes ready for that, 0 to 1.
     pub(super) bears: f32,
 }
 
@@ -215,10 +219,10 @@ impl Foot {
 
     /// Where the toe is wanted now.
     pub(super) fn wanted(&self, leg: &LegNow, going: &Going<'_>, ground: &impl Ground) -> Wanted {
-        let heading_rad = self.heading_rad;
         if self.is_planted {
-            return Wanted { toe: self.print, heading_rad, load: 1.0, bears_at: self.print, bears: 1.0 };
+            return self.wanted_planted(leg, going);
         }
+        let heading_rad = self.heading_rad;
         let share = ((self.generic - self.left) / (1.0 - self.left)).max(0.0);
         let late = smooth(share);
         let strides = (1.0 - leg.cycle) / leg.pace;
@@ -234,11 +238,29 @@ impl Foot {
         let risen_m = going.slope * gone_m.dot(going.facing.ahead) as f32 - going.falls_m;
         let turn = going.heading_rad + f64::from(turned_rad) - heading_rad;
         Wanted {
+            is_planted: false,
             toe: DVec3::new(at.x, f64::from(height), at.y),
             heading_rad: heading_rad + turn * f64::from(late),
             load: 1.0 - smooth(share.min(1.0 - share) / super::retarget::EASING),
             bears_at: DVec3::new(seen.x, f64::from(next_height - risen_m), seen.y),
             bears: going.heeds * smooth((share - HEEDED_FROM) / (1.0 - HEEDED_FROM)),
+        }
+    }
+
+    fn wanted_planted(&self, leg: &LegNow, going: &Going<'_>) -> Wanted {
+        let duty = going.timing.duties[leg.limb];
+        let strides = ((duty - leg.cycle) / leg.pace).max(0.0);
+        let gone_m = going.after(strides).0 - going.at_m;
+        let risen_m = f64::from(going.slope) * gone_m.dot(going.facing.ahead);
+        let seen = self.print - DVec3::new(gone_m.x, risen_m, gone_m.y);
+        let through = (leg.cycle / duty - LEAVING_FROM) / (1.0 - LEAVING_FROM);
+        Wanted {
+            is_planted: true,
+            toe: self.print,
+            heading_rad: self.heading_rad,
+            load: 1.0,
+            bears_at: seen,
+            bears: going.heeds * smooth(through) * (1.0 - going.standing),
         }
     }
 

@@ -38,9 +38,11 @@ impl HorseState {
         let legs = self.legs_now(repertoire, &rows, &timing, &cycles);
         let going = self.going(repertoire, &timing);
         let (feet, has_to_step) = self.stepped(&legs, &going, ground);
-        let wanted: [Wanted; 4] = std::array::from_fn(|limb| feet[limb].wanted(&legs[limb], &going, ground));
+        let mut wanted: [Wanted; 4] =
+            std::array::from_fn(|limb| feet[limb].wanted(&legs[limb], &going, ground));
         let off_m = off_track_m(&legs, &wanted, &going);
-        self.has_left = std::array::from_fn(|limb| self.feet[limb].is_planted && !feet[limb].is_planted);
+        let stood = self.feet.map(|foot| foot.is_planted);
+        self.has_left = std::array::from_fn(|limb| stood[limb] && !feet[limb].is_planted);
         (self.feet, self.is_stepping) = (feet, has_to_step);
         let most = MOST_DRAWN_M * repertoire.size;
         for (drawn, off) in self.drawn_m.iter_mut().zip(off_m) {
@@ -49,6 +51,7 @@ impl HorseState {
 
         let mut pose = self.trunk(repertoire, &body_row, &rows);
         self.tilt_legs(repertoire, &mut pose, &wanted);
+        self.settle(repertoire, &pose, &mut wanted, stood, ground);
         self.stand(repertoire, &mut pose, &wanted, dt_s);
         self.pose = pose;
     }
@@ -117,7 +120,7 @@ impl HorseState {
 fn off_track_m(legs: &[LegNow; 4], wanted: &[Wanted; 4], going: &Going<'_>) -> [f32; 2] {
     let (mut off_m, mut weights) = (DVec2::ZERO, TRACK_WEIGHT);
     for (leg, wanted) in legs.iter().zip(wanted) {
-        if wanted.bears < 1.0 {
+        if !wanted.is_planted {
             continue;
         }
         let through = (leg.cycle / going.timing.duties[leg.limb]).min(1.0);

@@ -26,7 +26,7 @@ const STIFLE_SD_RAD: f32 = 0.35;
 const LIMIT_MARGIN_RAD: f32 = 1e-5;
 /// A leg is never stretched beyond this share of its greatest length: nearer to it a millimetre of the body is degrees at the
 /// joints.
-const STRETCH: f32 = 0.995;
+const STRETCH: f32 = 0.985;
 /// No joint is turned by more than this in one step, rad: the place moves on a curve, the step on its tangent.
 const MOST_STEP_RAD: f32 = 0.3;
 /// A joint is turned from its start by no more than this, rad: a solution farther off is another posture.
@@ -238,10 +238,14 @@ impl LegRig {
     /// Turns the joints of a leg from a start as little as it takes to bring its toe to its place, within their limits.
     pub(super) fn solve(&self, girdle: &Girdle, start: &LegBends, aim: &Aim) -> Reached {
         let (sideways, place, beside_m) = self.sideways(girdle, aim);
-        let (mut bends_rad, mut missing_m) = self.solve_in_plane(girdle.angle_rad, start, place, aim.load);
+        let there_m = if aim.load > 0.0 { THERE_M } else { THERE_IN_AIR_M };
+        let in_plane = |start: &LegBends, load: f32| {
+            self.solve_in_plane([girdle.angle_rad, load, there_m], start, place)
+        };
+        let (mut bends_rad, mut missing_m) = in_plane(start, aim.load);
         if aim.load > 0.0 && missing_m.length() > NEAR_M {
             // Where a leg would otherwise not do, its locked joints give way before the body does.
-            (bends_rad, missing_m) = self.solve_in_plane(girdle.angle_rad, &bends_rad, place, 0.0);
+            (bends_rad, missing_m) = in_plane(&bends_rad, 0.0);
         }
         let miss_m = if missing_m.is_finite() { missing_m.length() + beside_m } else { f32::INFINITY };
         Reached { bends_rad, limb_turn_rad: sideways[0], abduction_rad: sideways[1], miss_m, missing_m }
@@ -271,7 +275,14 @@ impl LegRig {
         ([limb_turn, abduction], Vec2::new(seen.x, seen.y), (seen.z - lateral).abs())
     }
 
-    fn solve_in_plane(&self, angle: f32, start: &LegBends, place: Vec2, load: f32) -> (LegBends, Vec2) {
+    /// Solves a leg whose first bone has an angle (rad) under a load, until its toe is within a distance (metres) of a place seen from
+    /// the joint; returns what it misses.
+    fn solve_in_plane(
+        &self,
+        [angle, load, there_m]: [f32; 3],
+        start: &LegBends,
+        place: Vec2,
+    ) -> (LegBends, Vec2) {
         let limits: [[f32; 2]; 4] = std::array::from_fn(|i| {
             let [low, high] = self.limits_rad[i];
             let most = MOST_TURNED_RAD[i];
@@ -289,7 +300,6 @@ impl LegRig {
             let turn = Vec2::from_angle(turned);
             places = places.map(|place| turn.rotate(place));
         }
-        let there_m = if load > 0.0 { THERE_M } else { THERE_IN_AIR_M };
         let mut best = (bends, Vec2::INFINITY);
         for _ in 0..STEPS {
             let miss = place - places[4];
