@@ -50,7 +50,7 @@ fn arguments() -> Option<Arguments> {
             "--from" => span_s[0] = value.parse().ok()?,
             "--to" => span_s[1] = value.parse().ok()?,
             "--only" if ["rides", "changes", "steady", "hostile", "situations"].contains(&value.as_str()) => {
-                only = Some(value)
+                only = Some(value);
             }
             _ => return None,
         }

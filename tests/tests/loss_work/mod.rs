@@ -173,7 +173,7 @@ impl Work {
 
     /// One change.
     pub(crate) fn change(&mut self) {
-        let mut random = self.random.clone();
+        let mut random = self.random;
         while !self.document().edit("A change", |draft| change(draft, &mut random)) {}
         self.random = random;
     }

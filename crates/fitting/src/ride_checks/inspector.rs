@@ -296,6 +296,7 @@ pub(super) fn numbers_missing(pose: &Pose, readout: &Readout) -> usize {
         readout.lowered_m,
         readout.heading_rad as f32,
         readout.strides as f32,
+        readout.phase,
     ];
     let lists = [
         &pose.bends_rad[..],
@@ -365,11 +366,11 @@ mod tests {
         let mut seen = readout([true; 4], &pose, &skeleton);
         inspector.inspect(&pose, &seen, DT_S, &FlatGround);
         inspector.inspect(&pose, &seen, DT_S, &FlatGround);
-        let before = inspector.findings().broken(&Limits::flat());
+        let before = inspector.findings().broken(&Limits::smooth());
         assert_eq!(before, [], "the standing horse itself is good");
         change(&mut pose, &mut seen);
         inspector.inspect(&pose, &seen, DT_S, &FlatGround);
-        let broken = inspector.findings().broken(&Limits::flat());
+        let broken = inspector.findings().broken(&Limits::smooth());
         broken.into_iter().map(|b| (b.quantity, b.worst.value)).collect()
     }
 
@@ -455,7 +456,7 @@ mod tests {
         let mut seen = readout([true; 4], &pose, &skeleton);
         inspector.inspect(&pose, &seen, DT_S, &FlatGround);
         inspector.inspect(&pose, &seen, DT_S, &FlatGround);
-        assert_eq!(inspector.findings().broken(&Limits::flat()), []);
+        assert_eq!(inspector.findings().broken(&Limits::smooth()), []);
         pose.root_in_world.z += 0.003;
         seen.prints.iter_mut().for_each(|print| print.z += 0.003);
         inspector.inspect(&pose, &seen, DT_S, &FlatGround);

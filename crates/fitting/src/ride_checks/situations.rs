@@ -91,9 +91,13 @@ impl Situation {
         *inspector.findings()
     }
 
-    /// The limits of its ground.
+    /// The limits of what is done on its ground.
     pub fn limits(&self) -> Limits {
-        if self.terrain == Terrain::Flat { Limits::flat() } else { Limits::terrain() }
+        match (self.terrain, self.then.leap) {
+            (Terrain::Flat, None) => Limits::smooth(),
+            (Terrain::Flat, Some(_)) => Limits::flat(),
+            _ => Limits::terrain(),
+        }
     }
 }
 

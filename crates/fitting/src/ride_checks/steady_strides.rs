@@ -10,7 +10,9 @@ use crate::database_checks::{Check, Deviation, KNOWN_DEVIATIONS, Known, check_da
 
 /// Between its samples the curve of a recorded stride misses the motion: by so much at a strike, m. The feet themselves are inspected at
 /// every step.
-const RESAMPLED_SLIDE_M: f64 = 0.004;
+const RESAMPLED_SLIDE_M: f64 = 0.005;
+/// The same over the ground at a lift-off, m: a toe leaves it within a sample.
+const RESAMPLED_FLOAT_M: f64 = 0.007;
 /// Greatest difference of a bend from one stride to the next, rad.
 const UNSTEADY_RAD: f64 = 0.005;
 
@@ -48,7 +50,7 @@ impl SteadyStrides {
         for (gait, mph) in gaits_and_speeds(every_mph) {
             match ride_one(repertoire, source, gait, mph) {
                 Ok(recorded) => {
-                    let broken = recorded.findings.broken(&Limits::flat());
+                    let broken = recorded.findings.broken(&Limits::smooth());
                     found.faults.extend(broken.iter().map(|b| format!("{gait} at {mph} mph: {b}")));
                     let (bone, rad) = recorded.unsteady;
                     if rad > UNSTEADY_RAD {
@@ -81,6 +83,7 @@ impl SteadyStrides {
     fn judged(&self) -> Vec<Deviation> {
         let resampled = |deviation: &Deviation| match deviation.check {
             Check::ToeSlides | Check::PrintMisplaced => deviation.value < RESAMPLED_SLIDE_M,
+            Check::ToeFloats => deviation.value < RESAMPLED_FLOAT_M,
             // A recorded stride has not been cut open: its end is compared with its beginning directly, and a strike or a lift-off may
             // well lie at its seam.
             Check::NotClosed => true,

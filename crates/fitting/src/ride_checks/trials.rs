@@ -118,7 +118,7 @@ impl Display for Seen<'_> {
             root.y,
             root.z
         )?;
-        for broken in self.findings.broken(&Limits::flat()) {
+        for broken in self.findings.broken(&Limits::smooth()) {
             if self.before.worst(broken.quantity) != broken.worst {
                 let part = broken.worst.part.name(self.horse.skeleton());
                 let (k, unit) = (broken.quantity.per_unit(), broken.quantity.unit());

@@ -129,8 +129,8 @@ impl Ride {
 
     /// Rides on until the left hind strikes.
     fn begin_stride(&mut self) {
-        let Readout { strides, stride_time_s, .. } = self.horse.readout();
-        self.advance((strides.ceil() - strides) * f64::from(stride_time_s));
+        let Readout { leg_cycles, stride_time_s, .. } = self.horse.readout();
+        self.advance(f64::from((1.0 - leg_cycles[Limb::LH.index()]) * stride_time_s));
         self.time_s = 0.0;
     }
 }

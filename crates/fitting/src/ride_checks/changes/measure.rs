@@ -39,7 +39,7 @@ pub struct ChangeCase {
 impl ChangeCase {
     /// What is wrong with it: of which kind, how much beyond its limit as a factor, and in plain words.
     pub fn faults(&self) -> Vec<Fault> {
-        let broken = self.findings.broken(&Limits::flat());
+        let broken = self.findings.broken(&Limits::smooth());
         let mut faults: Vec<Fault> = broken
             .iter()
             .map(|b| Fault { kind: b.quantity.name(), size: b.worst.value, text: b.to_string() })
