@@ -131,7 +131,8 @@ impl Horse {
         &self.state
     }
 
-    /// Goes back to a state that was kept, of a horse of the same build.
+    /// Goes back to a state that was kept. That of another build is taken over, too: from the next step on this horse's own legs stand
+    /// where the other's stood.
     pub fn restore(&mut self, state: &HorseState) {
         self.state = *state;
     }

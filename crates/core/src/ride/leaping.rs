@@ -17,9 +17,9 @@ const SPEED_M_S: [f32; 2] = [2.0, 14.0];
 /// Strides of the change from the approach to the leap, at least.
 const GATHERING_STRIDES: f32 = 0.75;
 /// Strides of the change from the landing to the gait that follows.
-const GOING_ON_STRIDES: f32 = 1.0;
+const GOING_ON_STRIDES: f32 = 2.5;
 /// The gait that follows comes when so much of the landing, from the first forefoot to the hind feet, is done.
-const LANDED: f32 = 0.4;
+const LANDED: f32 = 0.8;
 /// The leap's postures come and go within so many strides: its stride has a flight, and only what is on the ground before and
 /// after it is to be mixed with a gait.
 const MIXED_STRIDES: f32 = 0.35;

@@ -14,7 +14,9 @@ use crate::limb::Side;
 use crate::pose::Pose;
 use crate::random::Random;
 
-/// All that changes from step to step: plain data, to be kept for a save game or a rollback.
+/// All that changes from step to step: plain data, to be kept for a save game or a rollback. Its numbers
+/// are of both precisions: a format that keeps every bit of them (a binary one, or `serde_json` with its feature `float_roundtrip`)
+/// brings back the very same horse.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HorseState {
     pub(super) pose: Pose,
