@@ -20,7 +20,7 @@ fn at(speed_m_s: f32) -> Command {
 fn asked(step: usize) -> Command {
     Command {
         speed_m_s: [0.0, 2.0, 6.0, 13.0, 4.0][step / 120 % 5],
-        turn: if step / 90 % 2 == 0 { Turn::Rate(0.3) } else { Turn::Steps((step / 200) as i32) },
+        turn: if (step / 90).is_multiple_of(2) { Turn::Rate(0.3) } else { Turn::Steps((step / 200) as i32) },
         leap: (step % 400 > 380).then_some(Leap { height_m: 0.5, length_m: 3.0 }),
         ..Command::default()
     }
