@@ -239,8 +239,8 @@ const LIMITS: [(Quantity, [f64; 3]); Quantity::COUNT] = [
     (Quantity::ToeSpeed, [10.0, TOLD, TOLD]),
     // Half a hundredth of the horse's height, in one step.
     (Quantity::RootJump, [0.01, TOLD, TOLD]),
-    // Three times the fastest of the database's strides.
-    (Quantity::BendSpeed, [175.0, TOLD, TOLD]),
+    // Three and a half times the fastest of the database's strides.
+    (Quantity::BendSpeed, [200.0, TOLD, TOLD]),
     (Quantity::BendAcceleration, [TOLD, TOLD, TOLD]),
     // As deep as the clearance of a swing on short legs.
     (Quantity::UnderGround, [0.035, TOLD, TOLD]),
