@@ -54,6 +54,8 @@ pub(super) struct Going<'a> {
     pub(super) heading_rad: f64,
     pub(super) facing: Facing,
     pub(super) timing: &'a Timing,
+    /// Length of a stride, metres.
+    pub(super) stride_m: f32,
     /// How much the horse stands, as its posture does, and what makes it so.
     pub(super) standing: f32,
     pub(super) stillness: f32,
@@ -110,9 +112,9 @@ impl Going<'_> {
             return self.timing.speed_m_s * leaping.time_s(repertoire, warp, strides, self.timing.rate_hz);
         }
         if self.stillness == 0.0 && !self.is_halting {
-            return self.timing.stride_m() * strides + 0.5 * self.gain_m * strides * strides.abs();
+            return self.stride_m * strides + 0.5 * self.gain_m * strides * strides.abs();
         }
-        self.timing.stride_m() * stillness::stride_lengths(self.stillness, self.is_halting, strides)
+        self.stride_m * stillness::stride_lengths(self.stillness, self.is_halting, strides)
     }
 
     /// Place, turn (rad) and direction so many strides from now.

@@ -19,6 +19,7 @@ impl HorseState {
             heading_rad: self.track.heading_rad,
             facing: Facing::new(self.track.heading_rad),
             timing,
+            stride_m: timing.stride_m(),
             standing: smooth(self.stillness),
             stillness: self.stillness,
             is_halting: self.is_halting,

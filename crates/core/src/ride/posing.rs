@@ -81,7 +81,7 @@ impl HorseState {
         pose.lateral_bends_rad[..bone::NECK].fill(spine / 4.0);
         pose.lateral_bends_rad[bone::NECK..bone::HEAD].fill(neck / 3.0);
         pose.lateral_bends_rad[bone::HEAD] = head;
-        let pitch = mix(row[body::PITCH], 0.0) + self.terrain.slope(repertoire.rig.trunk_m).atan();
+        let pitch = mix(row[body::PITCH], 0.0) + self.terrain.rise_rad(repertoire.rig.trunk_m);
         let height_m = mix(row[body::HEIGHT], still.root_in_world.y);
         self.place_root(&mut pose, [height_m, pitch], mix(row[body::SURGE], 0.0));
         pose
@@ -102,7 +102,7 @@ impl HorseState {
 
     /// Legs stay upright while the trunk takes the slope, and hooves on the ground take its slope under them.
     fn tilt_legs(&self, repertoire: &Repertoire, pose: &mut Pose, wanted: &[Wanted; 4]) {
-        let body_rad = self.terrain.slope(repertoire.rig.trunk_m).atan();
+        let body_rad = self.terrain.rise_rad(repertoire.rig.trunk_m);
         let mut turn = |bone: usize, by_rad: f32| {
             let [low, high] = repertoire.rig.limits_rad[bone];
             pose.bends_rad[bone] = (pose.bends_rad[bone] + by_rad).clamp(low, high);

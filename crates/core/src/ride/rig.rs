@@ -155,6 +155,16 @@ fn along(angle: f32, turn: f32) -> Vec3 {
     Vec3::new(cos * cos_turn, sin, -cos * sin_turn)
 }
 
+/// The angle of a cross and a dot product, rad; small ones, which most are, by the series of the arc tangent to its ninth power.
+fn angle_of(cross: f32, dot: f32) -> f32 {
+    if cross.abs() >= 0.2 * dot {
+        return cross.atan2(dot);
+    }
+    let t = cross / dot;
+    let square = t * t;
+    t * (1.0 - square * (1.0 / 3.0 - square * (0.2 - square / 7.0)))
+}
+
 /// A turn about Y, to the left positive.
 #[derive(Clone, Copy, Debug)]
 struct Turned {
@@ -266,7 +276,7 @@ impl LegRig {
         // The turn about X that carries (down, lateral) to (seen.y, seen.z).
         let cross = down * seen.z - lateral * seen.y;
         let dot = down * seen.y + lateral * seen.z;
-        let abduction = cross.atan2(dot);
+        let abduction = angle_of(cross, dot);
         if abduction.abs() <= SIDEWAYS_RAD {
             return ([limb_turn, abduction], Vec2::new(seen.x, down), 0.0);
         }
@@ -293,7 +303,7 @@ impl LegRig {
         let mut bends: LegBends = std::array::from_fn(|i| start[i].clamp(limits[i][0], limits[i][1]));
         // The whole leg is turned towards the place first, so that only its length is left to be solved.
         let mut places = self.places(angle, &bends);
-        let aside = places[4].perp_dot(place).atan2(places[4].dot(place));
+        let aside = angle_of(places[4].perp_dot(place), places[4].dot(place));
         if aside.is_finite() {
             let turned = (bends[0] + aside).clamp(limits[0][0], limits[0][1]) - bends[0];
             bends[0] += turned;

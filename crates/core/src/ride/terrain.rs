@@ -47,9 +47,16 @@ impl Terrain {
         ((self.lifts_m[1] - self.lifts_m[0]) / trunk_m).clamp(-MOST_SLOPE, MOST_SLOPE)
     }
 
+    /// Angle at which the ground rises under the horse, rad.
+    pub(super) fn rise_rad(&self, trunk_m: f32) -> f32 {
+        let slope = self.slope(trunk_m);
+        if slope == 0.0 { 0.0 } else { slope.atan() }
+    }
+
     /// Horizontal over real distance.
     pub(super) fn level(&self, trunk_m: f32) -> f32 {
-        1.0 / self.slope(trunk_m).hypot(1.0)
+        let slope = self.slope(trunk_m);
+        1.0 / (1.0 + slope * slope).sqrt()
     }
 
     /// Share of their length that steps keep here: a leg that reaches downhill has farther to go.

@@ -106,7 +106,8 @@ impl Track {
             let sought = sought[i].clamp(-MOST_BENT_RAD[i], MOST_BENT_RAD[i]);
             self.bends_rad[i] += (sought - self.bends_rad[i]) * lagged(dt_s, BENDING_S[i]);
         }
-        let balance = (self.turn_rate_rad_s * speed_m_s / super::retarget::GRAVITY_M_S2).atan();
+        let pull = self.turn_rate_rad_s * speed_m_s / super::retarget::GRAVITY_M_S2;
+        let balance = if pull == 0.0 { 0.0 } else { pull.atan() };
         self.lean_rad += (LEAN_SHARE * balance - self.lean_rad) * lagged(dt_s, LEANING_S);
     }
 }

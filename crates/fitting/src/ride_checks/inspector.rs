@@ -429,10 +429,10 @@ mod tests {
         let found: Vec<Quantity> = jumped.iter().map(|row| row.0).collect();
         assert_eq!(found, [Quantity::ToeSpeed, Quantity::RootJump], "{jumped:?}");
         let flicked = broken_by(|pose, seen| {
-            pose.bends_rad[Limb::RH.hoof_bone()] -= 1.3;
+            pose.bends_rad[Limb::RH.hoof_bone()] -= 2.0;
             seen.on_ground = [false; 4];
         });
-        assert!(flicked.iter().any(|row| row.0 == Quantity::BendSpeed && row.1 > 140.0), "{flicked:?}");
+        assert!(flicked.iter().any(|row| row.0 == Quantity::BendSpeed && row.1 > 200.0), "{flicked:?}");
     }
 
     #[test]
