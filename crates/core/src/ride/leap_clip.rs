@@ -39,7 +39,7 @@ impl LeapClip {
     ) -> Result<Self, DataError> {
         let missing = || DataError::Invalid("the database has no leap".to_owned());
         let stride = database.strides_of(Gait::Leap).next().ok_or_else(missing)?;
-        let clip = retarget(stride, reference, skeleton, rig).ok_or_else(|| {
+        let clip = retarget(stride, reference, rig).ok_or_else(|| {
             DataError::Invalid(format!("{}: a leg cannot reach the ground in the leap", skeleton.name))
         })?;
         let of = |pair: Pair| Limb::ALL.into_iter().filter(move |limb| limb.pair() == pair).map(Limb::index);

@@ -200,8 +200,7 @@ impl Strides {
             .strides_of(gait)
             .filter(|stride| !matches!(stride.provenance, Provenance::Captured { .. }))
             .collect();
-        let clips: Option<Vec<Clip>> =
-            made.iter().map(|stride| retarget(stride, reference, skeleton, rig)).collect();
+        let clips: Option<Vec<Clip>> = made.iter().map(|stride| retarget(stride, reference, rig)).collect();
         let clips = clips.ok_or_else(|| {
             DataError::Invalid(format!("{}: a leg cannot reach the ground at the {gait}", skeleton.name))
         })?;
