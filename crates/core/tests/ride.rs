@@ -148,6 +148,29 @@ fn a_leap_rises_and_reaches_as_asked() {
 }
 
 #[test]
+fn hooves_take_the_slope_of_the_ground_they_stand_on() {
+    let rises = [-0.2f32, 0.0, 0.2];
+    let tilts = rises.map(|rise| {
+        let mut horse = horse(4);
+        let ground = move |x: f32, _z: f32| rise * x;
+        horse.place(glam::DVec3::ZERO, 0.0, &ground);
+        (0..120).for_each(|_| _ = horse.step(&at(0.0), STEP_S, &ground));
+        let joints = horse.pose().joints(horse.skeleton());
+        Limb::ALL.map(|limb| {
+            let hoof = joints.toe(limb) - joints.bases[limb.hoof_bone()];
+            hoof.y.atan2(hoof.x)
+        })
+    });
+    for limb in 0..4 {
+        for slope in [0, 2] {
+            let turned = tilts[slope][limb] - tilts[1][limb];
+            let share = turned / rises[slope].atan();
+            assert!((0.4..1.6).contains(&share), "leg {limb} on {}: {share} of the slope", rises[slope]);
+        }
+    }
+}
+
+#[test]
 fn walk_gives_way_near_a_froude_number_of_a_third_and_at_the_same_one_whatever_the_size() {
     for factor in [0.6, 1.0, 1.4] {
         let skeleton = Skeleton::reference().scaled(factor);

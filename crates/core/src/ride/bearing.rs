@@ -34,6 +34,8 @@ const WORTH: f32 = 0.8;
 const PULL: f32 = 1.3;
 /// Softness with which a leg's limit of reach is met, metres.
 const SOFT_M: f32 = 0.004;
+/// On ground that rises at this angle a hoof keeps to its slope, rad.
+const SLOPING_RAD: f32 = 0.1;
 /// A foot that is still farther than this from its place has to leave the ground, metres.
 const LOST_M: f32 = 5e-5;
 
@@ -176,6 +178,7 @@ impl HorseState {
             toe: pose.world_from_root.inverse() * from_root.as_vec3(),
             hoof_turn_rad: (wanted.heading_rad - self.track.heading_rad) as f32,
             load: wanted.load,
+            keeps_hoof: wanted.load * (self.feet[limb].rise_rad.abs() / SLOPING_RAD).min(1.0),
         };
         repertoire.rig.legs[limb].solve(girdle, &leg_bends(pose, Limb::ALL[limb]), &aim)
     }

@@ -171,8 +171,9 @@ pub(super) fn generic_time(cycle: f32, duty: f32) -> f32 {
 
 impl Foot {
     /// A foot on the ground.
-    pub(super) fn standing(print: DVec3, heading_rad: f64) -> Self {
-        Self { print, heading_rad, is_planted: true, ..Self::default() }
+    pub(super) fn standing(print: DVec3, heading_rad: f64, ground: &impl Ground) -> Self {
+        let rise_rad = ground.surface(print.x as f32, print.z as f32).rise_rad(heading_rad);
+        Self { print, heading_rad, rise_rad, is_planted: true, ..Self::default() }
     }
 
     /// Takes the foot to its place in the cycle: it may leave the ground, or strike. `may_leave` is asked when it would leave.

@@ -94,7 +94,7 @@ impl Horse {
             let foot = Facing::new(heading_rad).beside(state.track.at_m, ahead_right);
             let height = height_m(ground, foot).unwrap_or(at.y as f32);
             let print = DVec3::new(foot.x, f64::from(height), foot.y);
-            state.feet[limb] = Foot::standing(print, heading_rad);
+            state.feet[limb] = Foot::standing(print, heading_rad, ground);
         }
         state.pose_now(repertoire, ground, 0.0);
     }

@@ -179,7 +179,7 @@ fn standing(skeleton: &Skeleton, rig: &Rig) -> Pose {
     for limb in Limb::ALL {
         let leg = &rig.legs[limb.index()];
         let toe = toes[limb.index()].with_y(-height_m);
-        let aim = super::rig::Aim { toe, hoof_turn_rad: 0.0, load: 1.0 };
+        let aim = super::rig::Aim { toe, hoof_turn_rad: 0.0, load: 1.0, keeps_hoof: 0.0 };
         let start = super::retarget::leg_bends(&pose, limb);
         let reached = leg.solve(&girdles[limb.index()], &start, &aim);
         let first = limb.first_bone() + 1;

@@ -280,7 +280,7 @@ fn solve_leg(moment: &Moment, rig: &Rig, leg_rig: &LegRig, path: &ToePath, k: us
     let [x, y] = path.places_m[k];
     let world = glam::Vec3::new(x, y, 0.0) - pose.root_in_world;
     let toe = (pose.world_from_root.inverse() * world).with_z(leg_rig.toe_lateral_m);
-    let aim = Aim { toe, hoof_turn_rad: 0.0, load: path.loads[k] };
+    let aim = Aim { toe, hoof_turn_rad: 0.0, load: path.loads[k], keeps_hoof: 0.0 };
     let reached = leg_rig.solve(&girdle, &leg_bends(pose, limb), &aim);
     let there = pose.root_in_world + pose.world_from_root * leg_rig.toe(&girdle, &reached.bends_rad);
     let mut row = [0.0; 8];

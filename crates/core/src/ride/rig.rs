@@ -20,6 +20,10 @@ const DAMPING_M: f32 = 0.02;
 const LOCKED: f32 = 0.01;
 /// Variance of a fetlock in the air against the other joints: nothing but the tendons moves it.
 const PASSIVE: f32 = 0.1;
+/// Variance of a fetlock whose hoof keeps its turn.
+const KEPT: f32 = 0.01;
+/// Rounds of turning a hoof back to the ground and solving the leg above it.
+const HOOF_ROUNDS: usize = 3;
 /// Usual deviation of a stifle, rad: what the skeleton's deviation of the hock from its coupling is measured by.
 const STIFLE_SD_RAD: f32 = 0.35;
 /// How far solved bends keep from the skeleton's limits, rad: rounding must not carry them over.
@@ -77,6 +81,8 @@ pub(super) struct Aim {
     pub(super) hoof_turn_rad: f32,
     /// 1 in stance, 0 in the air.
     pub(super) load: f32,
+    /// How much the hoof keeps the turn it begins with, 0 to 1: as it does where it lies on sloping ground.
+    pub(super) keeps_hoof: f32,
 }
 
 /// A solved leg.
@@ -250,12 +256,25 @@ impl LegRig {
         let (sideways, place, beside_m) = self.sideways(girdle, aim);
         let there_m = if aim.load > 0.0 { THERE_M } else { THERE_IN_AIR_M };
         let in_plane = |start: &LegBends, load: f32| {
-            self.solve_in_plane([girdle.angle_rad, load, there_m], start, place)
+            let fetlock = (PASSIVE + load * (1.0 - PASSIVE)) * (1.0 - aim.keeps_hoof) + KEPT;
+            self.solve_in_plane([girdle.angle_rad, there_m], start, place, [load, fetlock])
         };
         let (mut bends_rad, mut missing_m) = in_plane(start, aim.load);
         if aim.load > 0.0 && missing_m.length() > NEAR_M {
             // Where a leg would otherwise not do, its locked joints give way before the body does.
             (bends_rad, missing_m) = in_plane(&bends_rad, 0.0);
+        }
+        let hoof_rad: f32 = start.iter().sum();
+        for _ in 0..if aim.keeps_hoof > 0.0 { HOOF_ROUNDS } else { 0 } {
+            // What the joints above have turned the hoof by, its own joint takes back.
+            let off_rad = hoof_rad - bends_rad.iter().sum::<f32>();
+            let mut turned_rad = bends_rad;
+            turned_rad[3] += aim.keeps_hoof * off_rad;
+            let solved = in_plane(&turned_rad, aim.load);
+            if solved.1.length() > NEAR_M {
+                break;
+            }
+            (bends_rad, missing_m) = solved;
         }
         let miss_m = if missing_m.is_finite() { missing_m.length() + beside_m } else { f32::INFINITY };
         Reached { bends_rad, limb_turn_rad: sideways[0], abduction_rad: sideways[1], miss_m, missing_m }
@@ -285,13 +304,14 @@ impl LegRig {
         ([limb_turn, abduction], Vec2::new(seen.x, seen.y), (seen.z - lateral).abs())
     }
 
-    /// Solves a leg whose first bone has an angle (rad) under a load, until its toe is within a distance (metres) of a place seen from
-    /// the joint; returns what it misses.
+    /// Solves a leg whose first bone has an angle (rad) until its toe is within a distance (metres) of a place seen from the joint, under a
+    /// load and with a variance of the fetlock; returns what it misses.
     fn solve_in_plane(
         &self,
-        [angle, load, there_m]: [f32; 3],
+        [angle, there_m]: [f32; 2],
         start: &LegBends,
         place: Vec2,
+        willing: [f32; 2],
     ) -> (LegBends, Vec2) {
         let limits: [[f32; 2]; 4] = std::array::from_fn(|i| {
             let [low, high] = self.limits_rad[i];
@@ -320,7 +340,7 @@ impl LegRig {
             if miss_m < there_m || miss_m.is_nan() {
                 break;
             }
-            let turn = self.turn(&places, &bends, &limits, miss, load);
+            let turn = self.turn(&places, &bends, &limits, miss, willing);
             let most = turn.iter().fold(MOST_STEP_RAD, |most, turn| turn.abs().max(most));
             for i in 0..4 {
                 let turn = turn[i] * MOST_STEP_RAD / most;
@@ -338,10 +358,9 @@ impl LegRig {
         bends: &LegBends,
         limits: &[[f32; 2]; 4],
         miss: Vec2,
-        load: f32,
+        [load, fetlock]: [f32; 2],
     ) -> LegBends {
         let carpus = if self.is_fore { 1.0 + load * (LOCKED - 1.0) } else { self.coupling[1] };
-        let fetlock = PASSIVE + load * (1.0 - PASSIVE);
         let mut free = [1.0f32; 4];
         let mut step = [0.0; 4];
         // The nearer the place, the less damping: far off it keeps calm, close by it would only slow down.
@@ -397,7 +416,7 @@ mod tests {
         let first = limb.first_bone();
         let start: LegBends = std::array::from_fn(|i| pose.bends_rad[first + 1 + i]);
         let toe = leg.toe(&girdle, &start) + by;
-        let aim = Aim { toe, hoof_turn_rad: 0.1, load };
+        let aim = Aim { toe, hoof_turn_rad: 0.1, load, keeps_hoof: 0.0 };
         let reached = leg.solve(&girdle, &start, &aim);
         pose.bends_rad[first + 1..first + 5].copy_from_slice(&reached.bends_rad);
         pose.limb_turns_rad[limb.index()] = reached.limb_turn_rad;
