@@ -17,7 +17,7 @@ const ARROWS: [(&str, &[&str]); 8] = [
     ("fitting", &["core", "capture"]),
     ("footprints", &["core"]),
     ("export", &["core"]),
-    ("cli", &["core", "capture", "imaging", "fitting"]),
+    ("cli", &["core", "capture", "imaging", "fitting", "footprints"]),
     ("annotator", &["core", "capture", "imaging", "fitting", "footprints"]),
 ];
 /// The crate that may use all others.

@@ -8,6 +8,7 @@ mod places;
 mod pose_commands;
 mod propose_commands;
 mod second_pass_commands;
+mod track_commands;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -29,6 +30,7 @@ use dialogs::{After, Dialog};
 pub use places::Places;
 
 use crate::command::{Command, Scope};
+use crate::views::footprints_page::FootprintsPage;
 use crate::views::ride_page::RidePage;
 
 /// What a page may use of the program besides its plate.
@@ -53,6 +55,8 @@ pub struct Annotator {
     pub session: Option<Session>,
     /// The Ride page, which needs no plate.
     pub ride: RidePage,
+    /// The Footprints page, which needs no plate either.
+    pub footprints: FootprintsPage,
     palette: Option<Palette>,
     key_editor: Option<KeyEditor>,
     browser: Option<Browser>,
@@ -72,6 +76,7 @@ impl Annotator {
             messages: Messages::default(),
             session: None,
             ride: RidePage::default(),
+            footprints: FootprintsPage::default(),
             palette: None,
             key_editor: None,
             browser: None,
@@ -94,6 +99,7 @@ impl Annotator {
             annotator.open_specimen(context);
             annotator.tour = Some(Tour::default());
         }
+        annotator.mention_tracks_left();
         annotator
     }
 
@@ -121,8 +127,11 @@ impl Annotator {
         if let Some(session) = &mut self.session {
             session.before_frame(&context, self.settings.fit_always);
         }
-        let Self { settings, messages, session, ride, .. } = self;
-        if ride.is_open() {
+        let Self { settings, messages, session, ride, footprints, .. } = self;
+        if footprints.is_open() {
+            let mut page = PageContext { settings, messages, commands: &mut commands };
+            footprints.show(ui, session.is_some(), &mut page);
+        } else if ride.is_open() {
             let mut page = PageContext { settings, messages, commands: &mut commands };
             ride.show(ui, session.as_mut(), &mut page);
         } else if let Some(session) = session {
@@ -141,6 +150,15 @@ impl Annotator {
         self.messages.show(&context);
     }
 
+    /// Where commands act now.
+    fn scope(&self) -> Scope {
+        match (self.footprints.is_open(), self.ride.is_open()) {
+            (true, _) => Scope::Footprints,
+            (false, true) => Scope::Ride,
+            (false, false) => Scope::Plate,
+        }
+    }
+
     /// Whether something is open that has the keys to itself.
     fn is_asking(&self) -> bool {
         self.dialog.is_some() || self.palette.is_some() || self.key_editor.is_some()
@@ -151,7 +169,7 @@ impl Annotator {
         if context.egui_wants_keyboard_input() {
             return;
         }
-        let on = if self.ride.is_open() { Scope::Ride } else { Scope::Plate };
+        let on = self.scope();
         let pressed: Vec<_> = context.input(|input| {
             let key = |event| Some((crate::keys::pressed(event)?, is_repeated(event)));
             input.events.iter().filter_map(key).collect()
@@ -258,6 +276,7 @@ impl Annotator {
                     self.show_document(context, *document);
                 }
             }
+            Opened::Track(track, path) => self.offer_track(context, *track, &path),
             Opened::Waiting(waiting) => self.dialog = Some(Dialog::Recover(vec![waiting])),
             Opened::Folder(folder) => self.browser = Some(Browser::new(&folder)),
         }
@@ -280,6 +299,7 @@ impl Annotator {
         }
         self.session = Some(session);
         self.ride.close();
+        self.footprints.close();
     }
 
     /// Whether the open plate has changes that are not saved, what is being typed or dragged among them.

@@ -2,6 +2,7 @@
 
 use egui::Color32;
 use muybridge_capture::{BodyPoint, Keypoint, NearOff};
+use muybridge_footprints::Foot;
 
 /// Near legs.
 pub const NEAR: Color32 = Color32::from_rgb(255, 150, 30);
@@ -67,4 +68,23 @@ pub fn edges() -> impl Iterator<Item = [Keypoint; 2]> {
 /// A point's name for people: `near hock`.
 pub fn name(keypoint: Keypoint) -> String {
     keypoint.name().replace('_', " ")
+}
+
+/// Colour of a footprint: left as the off legs, right as the near ones, which the usual cameras see.
+pub fn foot(foot: Foot) -> Color32 {
+    match foot {
+        Foot::Left | Foot::LeftFore | Foot::LeftHind => OFF,
+        Foot::Right | Foot::RightFore | Foot::RightHind => NEAR,
+    }
+}
+
+/// Colour of a phase of support: in flight, on one foot (that foot's), on two, on three, on four.
+pub fn support(down: &[Foot]) -> Color32 {
+    match down {
+        [] => MARK,
+        [one] => foot(*one),
+        [_, _] => FIT,
+        [_, _, _] => TRUNK,
+        _ => Color32::from_gray(190),
+    }
 }

@@ -20,13 +20,15 @@ pub enum Menu {
     Gait,
     /// Driving the horse.
     Ride,
+    /// Motion from footprints.
+    Footprints,
     /// Help and settings.
     Help,
 }
 
 impl Menu {
     /// All menus in the order of the bar, with their titles.
-    pub const ALL: [(Self, &'static str); 8] = [
+    pub const ALL: [(Self, &'static str); 9] = [
         (Self::File, "File"),
         (Self::Edit, "Edit"),
         (Self::View, "View"),
@@ -34,11 +36,13 @@ impl Menu {
         (Self::Pose, "Pose"),
         (Self::Gait, "Gait"),
         (Self::Ride, "Ride"),
+        (Self::Footprints, "Footprints"),
         (Self::Help, "Help"),
     ];
 }
 
-/// Where a command acts, and its keys with it: the same key may do one thing on the pages of a plate and another on the Ride page.
+/// Where a command acts, and its keys with it: the same key may do one thing on the pages of a plate and another on the
+/// Ride page or on the Footprints page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// On every page.
@@ -47,6 +51,8 @@ pub enum Scope {
     Plate,
     /// On the Ride page.
     Ride,
+    /// On the Footprints page.
+    Footprints,
 }
 
 impl Scope {
@@ -171,6 +177,8 @@ commands! {
     PagePlay, "page-play", "Play page", View, [plain(Key::F5)];
     /// A horse to drive.
     PageRide, "page-ride", "Ride page", View, [plain(Key::F6)];
+    /// Prints that become motion.
+    PageFootprints, "page-footprints", "Footprints page", View, [plain(Key::F7)];
     /// The panel after this one; around the stride.
     NextPanel, "next-panel", "Next panel", View, [plain(Key::Period), plain(Key::PageDown)];
     /// The panel before this one.
@@ -306,6 +314,73 @@ commands! {
     /// Back to the plate, or to the first page.
     RideLeave, "ride-leave", "Leave the Ride page", Ride, [plain(Key::Escape)];
 
+    /// Takes the last step back.
+    FootprintsUndo, "footprints-undo", "Undo a change of the track", Footprints, [command(Key::Z)];
+    /// Brings back the step taken back.
+    FootprintsRedo, "footprints-redo", "Redo a change of the track", Footprints, [command_shift(Key::Z), command(Key::Y)];
+    /// The next foot, where the track goes on.
+    FootprintsAdd, "footprints-add", "Add a print", Footprints, [plain(Key::Insert), plain(Key::Plus)];
+    /// Prints, or a point of the path.
+    FootprintsDelete, "footprints-delete", "Delete what is selected", Footprints, [plain(Key::Delete), plain(Key::Backspace)];
+    /// All prints.
+    FootprintsSelectAll, "footprints-select-all", "Select all prints", Footprints, [command(Key::A)];
+    /// The print after this one.
+    FootprintsNextPrint, "footprints-next", "Select the next print", Footprints, [plain(Key::N), plain(Key::PageDown)];
+    /// The print before this one.
+    FootprintsPreviousPrint, "footprints-previous", "Select the previous print", Footprints, [shift(Key::N), plain(Key::PageUp)];
+    /// A centimetre.
+    FootprintsNudgeLeft, "footprints-nudge-left", "Move prints left by 1 cm", Footprints, [plain(Key::ArrowLeft)];
+    /// A centimetre.
+    FootprintsNudgeRight, "footprints-nudge-right", "Move prints right by 1 cm", Footprints, [plain(Key::ArrowRight)];
+    /// A centimetre.
+    FootprintsNudgeUp, "footprints-nudge-up", "Move prints up by 1 cm", Footprints, [plain(Key::ArrowUp)];
+    /// A centimetre.
+    FootprintsNudgeDown, "footprints-nudge-down", "Move prints down by 1 cm", Footprints, [plain(Key::ArrowDown)];
+    /// Each click is a point, or not any more.
+    FootprintsPath, "footprints-path", "Draw a path", Footprints, [plain(Key::D)];
+    /// Along the path; or those that lie there become the track's own.
+    FootprintsLay, "footprints-lay", "Lay prints along the path", Footprints, [plain(Key::L)];
+    /// Time passes, or stands.
+    FootprintsPlay, "footprints-play", "Play or pause the motion", Footprints, [plain(Key::P), plain(Key::Enter)];
+    /// A sixtieth of a second later.
+    FootprintsStepForward, "footprints-step-forward", "A moment later", Footprints, [plain(Key::Period)];
+    /// A sixtieth of a second earlier.
+    FootprintsStepBack, "footprints-step-back", "A moment earlier", Footprints, [plain(Key::Comma)];
+    /// The first moment.
+    FootprintsBegin, "footprints-begin", "To the beginning", Footprints, [plain(Key::Home)];
+    /// The whole track.
+    FootprintsShowAll, "footprints-show-all", "Show the whole track", Footprints, [plain(Key::Num0)];
+    /// Closer.
+    FootprintsZoomIn, "footprints-zoom-in", "Look closer at the plan", Footprints, [plain(Key::Equals)];
+    /// Farther.
+    FootprintsZoomOut, "footprints-zoom-out", "See more of the plan", Footprints, [plain(Key::Minus)];
+    /// Side, three-quarter, front, follow.
+    FootprintsCamera, "footprints-camera", "Next camera of the figure", Footprints, [plain(Key::C)];
+    /// A bird among trees, or its end.
+    FootprintsWander, "footprints-wander", "Let a bird wander, or end its walk", Footprints, [plain(Key::W)];
+    /// The walk so far, to be edited.
+    FootprintsKeepWalk, "footprints-keep-walk", "Keep the walk as a track", Footprints, [plain(Key::K)];
+    /// A track to begin with.
+    FootprintsNewBird, "footprints-new-bird", "New: walking bird", Footprints, [];
+    /// A track to begin with.
+    FootprintsNewStairs, "footprints-new-stairs", "New: dinosaur on stairs", Footprints, [];
+    /// A track to begin with.
+    FootprintsNewLeaps, "footprints-new-leaps", "New: a turn and leaps", Footprints, [];
+    /// A track to begin with.
+    FootprintsNewRunner, "footprints-new-runner", "New: running human", Footprints, [];
+    /// A track to begin with.
+    FootprintsNewTimed, "footprints-new-timed", "New: bird, timed by its distances", Footprints, [];
+    /// A track to begin with.
+    FootprintsNewPath, "footprints-new-path", "New: human along a path", Footprints, [];
+    /// A track to begin with.
+    FootprintsNewTrot, "footprints-new-trot", "New: horse in trot along a path", Footprints, [];
+    /// A track to begin with.
+    FootprintsNewRiver, "footprints-new-river", "New: stepping stones across a river", Footprints, [];
+    /// Nothing yet.
+    FootprintsNewEmpty, "footprints-new-empty", "New: no prints", Footprints, [];
+    /// Ends what is under way, then the tool, then the selection, then the page.
+    FootprintsLeave, "footprints-leave", "Step out of the Footprints page", Footprints, [plain(Key::Escape)];
+
     /// All commands by name.
     Palette, "palette", "All commands…", Help, [command_shift(Key::P), command(Key::P)];
     /// Which key does what.
@@ -332,12 +407,14 @@ impl Command {
                 | Self::PageGait
                 | Self::PagePlay
                 | Self::PageRide
+                | Self::PageFootprints
                 | Self::Theme
         );
         match self.description().menu {
             _ if everywhere => Scope::Everywhere,
             Menu::File | Menu::Help => Scope::Everywhere,
             Menu::Ride => Scope::Ride,
+            Menu::Footprints => Scope::Footprints,
             Menu::Edit | Menu::View | Menu::Plate | Menu::Pose | Menu::Gait => Scope::Plate,
         }
     }
@@ -346,7 +423,11 @@ impl Command {
     pub fn repeats(self) -> bool {
         let steps =
             matches!(self, Self::RideFaster | Self::RideSlower | Self::RideStepForward | Self::RideStepBack);
-        steps || self.scope() != Scope::Ride
+        let once = matches!(
+            self,
+            Self::FootprintsPlay | Self::FootprintsWander | Self::FootprintsPath | Self::FootprintsLeave
+        );
+        steps || (self.scope() != Scope::Ride && !once)
     }
 
     /// Name for people.

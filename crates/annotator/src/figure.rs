@@ -14,7 +14,7 @@ use egui::{
 };
 use glam::Vec3;
 use muybridge_core::{Side, bone};
-use muybridge_imaging::figure::{Camera, Scene, Terrain, Trace, render};
+use muybridge_imaging::figure::{Camera, Decal, Scene, Terrain, Trace, Tube, render};
 
 pub use muybridge_imaging::figure::{Figure as FigurePose, FigureColors};
 
@@ -93,6 +93,10 @@ impl Follow {
 pub struct SceneParts<'a> {
     /// The horses.
     pub figures: &'a [FigurePose],
+    /// Bodies that are no horses.
+    pub tubes: &'a [Tube],
+    /// Shapes on the ground, such as footprints.
+    pub decals: &'a [Decal],
     /// The ground.
     pub terrain: Terrain<'a>,
     /// Another number when the height function is another one: functions cannot be compared.
@@ -129,9 +133,11 @@ pub struct FigureView {
 #[derive(Clone, Debug, PartialEq)]
 struct Input {
     figures: Vec<FigurePose>,
+    tubes: Vec<Tube>,
+    decals: Vec<Decal>,
     traces: Vec<(Vec<Vec3>, [u8; 3])>,
-    /// None when hidden, then none when flat, or the version.
-    terrain: Option<Option<u64>>,
+    /// None when hidden, then none when flat, or whether it has edges and the version.
+    terrain: Option<Option<(bool, u64)>>,
     grid_m: f32,
     support_polygon: bool,
     camera: Camera,
@@ -191,6 +197,8 @@ impl FigureView {
         let follow = solid.or_else(|| poses.iter().find_map(follow));
         let parts = SceneParts {
             figures: poses,
+            tubes: &[],
+            decals: &[],
             terrain: Terrain::Flat,
             terrain_version: 0,
             grid_m: GRID_M,
@@ -262,7 +270,7 @@ impl FigureView {
             Camera::orbit(target, self.yaw + heading_rad, pitch, seen_m, size).from_distance(distance_m)
         };
         let is_above = |camera: &Camera| match parts.terrain {
-            Terrain::Height(height) => {
+            Terrain::Height(height) | Terrain::Stepped(height) => {
                 let eye = camera.eye();
                 let ground_m = height(eye.x, eye.z);
                 !ground_m.is_finite() || eye.y > ground_m + OVER_GROUND_M * horse
@@ -284,11 +292,14 @@ impl FigureView {
         }
         let input = Input {
             figures: parts.figures.iter().filter(|figure| figure.size().is_some()).copied().collect(),
+            tubes: parts.tubes.to_vec(),
+            decals: parts.decals.to_vec(),
             traces: parts.traces.iter().map(|trace| (trace.points.to_vec(), trace.color)).collect(),
             terrain: match parts.terrain {
                 Terrain::Hidden => None,
                 Terrain::Flat => Some(None),
-                Terrain::Height(_) => Some(Some(parts.terrain_version)),
+                Terrain::Height(_) => Some(Some((false, parts.terrain_version))),
+                Terrain::Stepped(_) => Some(Some((true, parts.terrain_version))),
             },
             grid_m: parts.grid_m,
             support_polygon: parts.support_polygon,
@@ -344,6 +355,8 @@ impl FigureView {
 fn drawn(input: &Input, parts: &SceneParts<'_>) -> ColorImage {
     let scene = Scene {
         figures: &input.figures,
+        tubes: &input.tubes,
+        decals: &input.decals,
         filmed: input.filmed,
         terrain: parts.terrain,
         grid_m: input.grid_m,

@@ -13,6 +13,7 @@ pub mod derived;
 pub mod exchange;
 pub mod figure;
 pub mod fit_state;
+pub mod footprints;
 pub mod job;
 pub mod key_editor;
 pub mod keys;

@@ -1,4 +1,4 @@
-//! Opening whatever a person names or drops: an annotation, a manifest, a picture, a folder of frames.
+//! Opening whatever a person names or drops: an annotation, a manifest, a picture, a folder of frames, a track of footprints.
 
 use std::path::{Path, PathBuf};
 
@@ -7,6 +7,7 @@ use muybridge_capture::{
     hash_file, locate_image, read_text, waiting,
 };
 use muybridge_core::Gait;
+use muybridge_footprints::Track;
 use muybridge_imaging::{LoadLimits, frames, load_gray};
 
 /// Longest text file that is looked at, bytes: the largest annotation known has a tenth of a megabyte.
@@ -17,6 +18,8 @@ const LONGEST_TEXT: u64 = 50_000_000;
 pub enum Opened {
     /// A plate, and what is wrong with its pictures on this machine.
     Document(Box<Document>, Vec<String>),
+    /// A track of footprints, and its file.
+    Track(Box<Track>, PathBuf),
     /// Its plate has unsaved work from before.
     Waiting(Waiting),
     /// A folder that holds plates and no frames.
@@ -77,9 +80,14 @@ fn open_document(path: &Path, journals: Option<&Path>) -> Result<Opened, String>
     if has("plate") && has("annotator") {
         return opened(Document::open(path, journals), path, journals);
     }
+    // Nothing else has footprints, and a track names who walks.
+    if has("model") && (has("prints") || has("path")) && !has("images") {
+        let track = Track::from_json(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+        return Ok(Opened::Track(Box::new(track), path.to_path_buf()));
+    }
     if !(has("images") && has("panels") && has("gait")) {
         return Err(format!(
-            "{}: neither an annotation nor a plate's manifest; points of other tools come in by File, Import points",
+            "{}: neither an annotation, nor a plate's manifest, nor a track of footprints; points of other tools come in by File, Import points",
             path.display()
         ));
     }

@@ -3,6 +3,7 @@
 pub mod calibrate_page;
 pub mod figure_box;
 pub mod footfall_bar;
+pub mod footprints_page;
 pub mod gait_page;
 pub mod plate_page;
 pub mod play_page;

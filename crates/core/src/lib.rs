@@ -39,8 +39,8 @@ pub use pose::{Joints, Pose};
 pub use provenance::{Provenance, SpeedSource};
 pub use random::Random;
 pub use ride::{
-    ChangeReadout, Command, FlatGround, Ground, Horse, HorseState, Leap, Readout, Repertoire, Surface,
-    TURN_STEP_RAD, Turn,
+    ChangeReadout, Command, FlatGround, Ground, Horse, HorseState, Leap, LegReach, OwnGait, ReachMiss,
+    Readout, Repertoire, Surface, TURN_STEP_RAD, ToeAim, Turn,
 };
 pub use skeleton::{
     BODY_BONE_COUNT, BONE_COUNT, Bone, FetlockCoupling, ReciprocalCoupling, SKELETON_SCHEMA, Skeleton,

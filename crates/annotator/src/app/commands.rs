@@ -23,6 +23,7 @@ impl Annotator {
                 | C::Quit
                 | C::Theme
                 | C::PageRide
+                | C::PageFootprints
                 | C::FitAlways
                 | C::Palette
                 | C::Keys
@@ -31,9 +32,12 @@ impl Annotator {
         if always || (command == C::OpenSpecimen && self.places.state.is_some()) {
             return None;
         }
-        match (command.scope(), self.ride.is_open()) {
+        match (command.scope(), self.scope()) {
             (Scope::Ride, _) => return self.ride.why_not(command),
-            (Scope::Plate, true) => return Some("Leave the Ride page first"),
+            (Scope::Footprints, _) => return self.footprints.why_not(command),
+            (Scope::Plate, Scope::Ride) => return Some("Leave the Ride page first"),
+            (Scope::Plate, Scope::Footprints) => return Some("Leave the Footprints page first"),
+            (_, Scope::Footprints) if matches!(command, C::Save | C::SaveAs) => return None,
             _ => {}
         }
         let Some(session) = &self.session else { return Some("Open a plate first") };
@@ -72,11 +76,15 @@ impl Annotator {
         if let Some(session) = &mut self.session {
             session.commit();
         }
-        if self.run_on_program(context, command) || self.ride.run(command) {
+        if self.run_on_tracks(context, command)
+            || self.run_on_program(context, command)
+            || self.ride.run(command)
+        {
             return;
         }
         let Some(session) = &mut self.session else { return };
         self.ride.close();
+        self.footprints.close();
         if !run_on_view(session, command) {
             session.run(context, command, &mut self.messages);
         }
@@ -103,9 +111,13 @@ impl Annotator {
             C::Keys => self.key_editor = Some(KeyEditor::default()),
             C::Tour => {
                 self.ride.close();
+                self.footprints.close();
                 self.tour = Some(Tour::default());
             }
-            C::PageRide => self.ride.open(context),
+            C::PageRide => {
+                self.footprints.close();
+                self.ride.open(context);
+            }
             C::OpenSpecimen => self.leave(context, After::OpenSpecimen),
             C::SecondPass => self.second_pass(context),
             _ => return false,

@@ -6,6 +6,7 @@ use egui::{Context, Id, Key, Modal, Ui};
 use muybridge_capture::{Document, Waiting, discard};
 
 use super::Annotator;
+use super::track_commands::TrackQuestion;
 
 /// What happens after a question is answered.
 pub(super) enum After {
@@ -33,6 +34,8 @@ pub(super) enum Dialog {
     Overwrite { trouble: String, save_as: Option<PathBuf>, after: After },
     /// Another name for the annotation.
     SaveAs(String),
+    /// About a track of footprints.
+    Track(TrackQuestion),
 }
 
 /// An answer.
@@ -50,6 +53,10 @@ enum Answer {
 impl Annotator {
     pub(super) fn show_dialog(&mut self, context: &Context) {
         let Some(mut dialog) = self.dialog.take() else { return };
+        if let Dialog::Track(question) = dialog {
+            self.ask_about_track(context, question);
+            return;
+        }
         let mut answer = None;
         let modal = Modal::new(Id::unique("dialog")).show(context, |ui| {
             ui.set_width(480.0);
@@ -58,6 +65,7 @@ impl Annotator {
                 Dialog::Unsaved(_) => ask_unsaved(ui),
                 Dialog::Overwrite { trouble, .. } => ask_overwrite(ui, trouble),
                 Dialog::SaveAs(path) => ask_save_as(ui, path),
+                Dialog::Track(_) => None,
             };
         });
         // Work that was left behind is not decided upon by a stray key.

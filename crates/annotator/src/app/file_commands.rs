@@ -7,6 +7,7 @@ use egui::{Context, ViewportCommand};
 use muybridge_capture::SaveError;
 
 use super::dialogs::{After, Dialog};
+use super::track_commands::AfterTrack;
 use super::{Annotator, Browser};
 use crate::job::Job;
 use crate::specimen;
@@ -19,7 +20,7 @@ impl Annotator {
         self.picking = Some(Job::start("Choosing a file", context, || {
             let asked = Instant::now();
             let endings = ["json", "jpg", "jpeg", "png", "tif", "tiff", "gif"];
-            let dialog = rfd::FileDialog::new().add_filter("Annotations, plates, pictures", &endings);
+            let dialog = rfd::FileDialog::new().add_filter("Annotations, plates, pictures, tracks", &endings);
             (dialog.pick_file(), asked.elapsed())
         }));
     }
@@ -29,6 +30,7 @@ impl Annotator {
     pub(super) fn take_picked(&mut self, context: &Context, (path, took): (Option<PathBuf>, Duration)) {
         match path {
             Some(path) => self.leave(context, After::Open(path)),
+            None if took < NO_DIALOG && self.footprints.is_open() => self.ask_track_path(),
             None if took < NO_DIALOG => self.browse(),
             None => {}
         }
@@ -95,6 +97,7 @@ impl Annotator {
         match after {
             After::Stay => {}
             After::Close => self.close_session(),
+            After::Quit if self.footprints.has_unsaved_work() => self.ask_to_save_track(AfterTrack::Quit),
             After::Quit => {
                 self.close_session();
                 self.may_close = true;
@@ -115,6 +118,9 @@ impl Annotator {
         if self.has_unsaved_work() {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
             self.dialog = Some(Dialog::Unsaved(After::Quit));
+        } else if self.footprints.has_unsaved_work() {
+            context.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.ask_to_save_track(AfterTrack::Quit);
         } else {
             self.close_session();
         }

@@ -25,6 +25,11 @@ impl Places {
         self.state.as_ref().map(|state| state.join("journals"))
     }
 
+    /// Folder of copies of tracks that are not saved.
+    pub fn tracks(&self) -> Option<PathBuf> {
+        self.state.as_ref().map(|state| state.join("tracks"))
+    }
+
     /// Folder of the specimen that comes with the program.
     pub fn specimen(&self) -> Option<PathBuf> {
         self.state.as_ref().map(|state| state.join("specimen"))

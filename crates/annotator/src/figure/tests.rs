@@ -139,6 +139,8 @@ fn the_view_turns_with_the_horse_and_stays_above_the_ground() {
     let figures = [standing()];
     let parts = SceneParts {
         figures: &figures,
+        tubes: &[],
+        decals: &[],
         terrain: Terrain::Height(&steep),
         terrain_version: 1,
         grid_m: 1.0,

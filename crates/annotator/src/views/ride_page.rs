@@ -24,6 +24,7 @@ use crate::ride::{RideSession, Which};
 use crate::session::Session;
 use crate::views::tabs;
 use scene::View;
+pub(in crate::views) use scene::scene_colors;
 use workshop::Workshop;
 
 /// The Ride page with everything that stays while another page is looked at.
@@ -141,7 +142,8 @@ impl RidePage {
         if let Some(fault) = self.fault.take() {
             page.messages.trouble(fault);
         }
-        Panel::top("pages").show(ui, |ui| tabs::show_riding(ui, session.is_some(), page));
+        let leave = (Command::PageRide, Command::RideLeave);
+        Panel::top("pages").show(ui, |ui| tabs::show_other(ui, leave, session.is_some(), page));
         let Some(ride) = &mut self.ride else {
             CentralPanel::default().show(ui, |ui| {
                 ui.centered_and_justified(|ui| {
@@ -260,7 +262,7 @@ fn section(ui: &mut Ui, title: &str, content: impl FnOnce(&mut Ui)) {
 }
 
 /// What a button's command does, with its key.
-fn with_key(page: &PageContext<'_>, command: Command) -> String {
+pub(in crate::views) fn with_key(page: &PageContext<'_>, command: Command) -> String {
     let keys: Vec<String> = page.settings.keys.keys(command).iter().map(crate::keys::to_words).collect();
     match keys.as_slice() {
         [] => command.title().to_string(),
@@ -269,7 +271,13 @@ fn with_key(page: &PageContext<'_>, command: Command) -> String {
 }
 
 /// A button that does a command.
-fn command_button(ui: &mut Ui, page: &mut PageContext<'_>, command: Command, text: &str, is_on: bool) {
+pub(in crate::views) fn command_button(
+    ui: &mut Ui,
+    page: &mut PageContext<'_>,
+    command: Command,
+    text: &str,
+    is_on: bool,
+) {
     let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
     if ui.add(button).on_hover_text(with_key(page, command)).clicked() {
         page.commands.push(command);

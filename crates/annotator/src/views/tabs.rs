@@ -6,21 +6,33 @@ use crate::app::PageContext;
 use crate::command::Command;
 use crate::session::{Page, Session};
 
-/// The pages with their commands; the Ride page is none of the plate's.
-const PAGES: [(Option<Page>, Command, &str); 6] = [
-    (Some(Page::Plate), Command::PagePlate, "1  Plate"),
-    (Some(Page::Calibrate), Command::PageCalibrate, "2  Calibrate"),
-    (Some(Page::Pose), Command::PagePose, "3  Pose"),
-    (Some(Page::Gait), Command::PageGait, "4  Gait"),
-    (Some(Page::Play), Command::PagePlay, "5  Play"),
-    (None, Command::PageRide, "6  Ride"),
+/// The pages with their commands, and whether they are the plate's.
+const PAGES: [(Command, &str, bool); 7] = [
+    (Command::PagePlate, "1  Plate", true),
+    (Command::PageCalibrate, "2  Calibrate", true),
+    (Command::PagePose, "3  Pose", true),
+    (Command::PageGait, "4  Gait", true),
+    (Command::PagePlay, "5  Play", true),
+    (Command::PageRide, "6  Ride", false),
+    (Command::PageFootprints, "7  Footprints", false),
 ];
 
-fn pages(ui: &mut Ui, shown: Option<Page>, has_plate: bool, page: &mut PageContext<'_>) {
-    for (this, command, title) in PAGES {
-        let button = egui::Button::selectable(shown == this, RichText::new(title).size(15.0));
+/// The command that goes to a page of the plate.
+fn command_of(page: Page) -> Command {
+    match page {
+        Page::Plate => Command::PagePlate,
+        Page::Calibrate => Command::PageCalibrate,
+        Page::Pose => Command::PagePose,
+        Page::Gait => Command::PageGait,
+        Page::Play => Command::PagePlay,
+    }
+}
+
+fn pages(ui: &mut Ui, shown: Command, has_plate: bool, page: &mut PageContext<'_>) {
+    for (command, title, is_plates) in PAGES {
+        let button = egui::Button::selectable(shown == command, RichText::new(title).size(15.0));
         let keys = page.settings.keys.shown(command);
-        let response = ui.add_enabled(has_plate || this.is_none(), button);
+        let response = ui.add_enabled(has_plate || !is_plates, button);
         if response.on_hover_text(keys).on_disabled_hover_text("Open a plate first").clicked() {
             page.commands.push(command);
         }
@@ -28,16 +40,18 @@ fn pages(ui: &mut Ui, shown: Option<Page>, has_plate: bool, page: &mut PageConte
     ui.separator();
 }
 
-/// The row while the Ride page is looked at.
-pub fn show_riding(ui: &mut Ui, has_plate: bool, page: &mut PageContext<'_>) {
+/// The row while a page is looked at that is none of the plate's: its command, and the one that leaves it.
+pub fn show_other(
+    ui: &mut Ui,
+    (shown, leave): (Command, Command),
+    has_plate: bool,
+    page: &mut PageContext<'_>,
+) {
     ui.horizontal(|ui| {
-        pages(ui, None, has_plate, page);
-        let (text, key) = (
-            if has_plate { "Back to the plate" } else { "Back" },
-            page.settings.keys.shown(Command::RideLeave),
-        );
-        if ui.button(text).on_hover_text(key).clicked() {
-            page.commands.push(Command::RideLeave);
+        pages(ui, shown, has_plate, page);
+        let text = if has_plate { "Back to the plate" } else { "Back" };
+        if ui.button(text).on_hover_text(page.settings.keys.shown(leave)).clicked() {
+            page.commands.push(leave);
         }
     });
 }
@@ -48,7 +62,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, page: &mut PageContext<'_>) {
         session.cancel();
     }
     ui.horizontal(|ui| {
-        pages(ui, Some(session.page), true, page);
+        pages(ui, command_of(session.page), true, page);
         if session.draft().manifest.facing.is_none() && !session.panel_numbers().is_empty() {
             ui.label("Which way does the animal face?");
             for (title, facing) in

@@ -13,12 +13,23 @@ pub fn show(ui: &mut Ui, settings: &Settings, commands: &mut Vec<Command>) -> Op
     ui.vertical_centered(|ui| {
         ui.add_space(60.0);
         ui.heading(RichText::new("Open a plate").size(26.0));
-        ui.label("Drop a picture, a folder of frames, a manifest or an annotation here.");
+        ui.label(
+            "Drop a picture, a folder of frames, a manifest, an annotation or a track of footprints here.",
+        );
         ui.add_space(16.0);
-        for command in
-            [Command::Open, Command::Browse, Command::OpenSpecimen, Command::PageRide, Command::Tour]
-        {
-            let title = if command == Command::PageRide { "Ride a horse" } else { command.title() };
+        for command in [
+            Command::Open,
+            Command::Browse,
+            Command::OpenSpecimen,
+            Command::PageRide,
+            Command::PageFootprints,
+            Command::Tour,
+        ] {
+            let title = match command {
+                Command::PageRide => "Ride a horse",
+                Command::PageFootprints => "Walk from footprints",
+                command => command.title(),
+            };
             let text = format!("{title}   {}", settings.keys.shown(command));
             if ui.add_sized([280.0, 32.0], egui::Button::new(text)).clicked() {
                 commands.push(command);

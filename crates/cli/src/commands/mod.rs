@@ -1,11 +1,15 @@
 //! `muybridge`: one file a subcommand.
 
+mod animation;
 mod annotations;
 mod average;
 mod canvas;
 mod contact_sheet;
 mod exchange;
+mod footprints;
 mod motion;
+mod output;
+mod palette;
 mod plates;
 mod tracks;
 
@@ -30,6 +34,9 @@ enum Command {
     Annotations(annotations::AnnotationsCommand),
     /// Average the strides of a tracked clip into one, written as a plate to fit.
     Average(average::AverageArguments),
+    /// Motion from footprints, on two legs and on four: `solve`, `lay`, `picture`, `gif`, `wander`, `river`.
+    #[command(subcommand)]
+    Footprints(footprints::FootprintsCommand),
     /// The horse in motion: `play`, `strip`, `gif`, `gaits`.
     #[command(subcommand)]
     Motion(motion::MotionCommand),
@@ -46,6 +53,7 @@ pub fn run(arguments: &Muybridge) -> ExitCode {
     let result = match &arguments.command {
         Command::Annotations(command) => command.run(),
         Command::Average(arguments) => arguments.run(),
+        Command::Footprints(command) => command.run(),
         Command::Motion(command) => command.run(),
         Command::Plates(command) => command.run(),
         Command::Tracks(command) => command.run(),

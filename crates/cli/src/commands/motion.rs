@@ -4,8 +4,6 @@ mod compare;
 mod gaits;
 mod gif;
 mod options;
-mod output;
-mod palette;
 mod picture;
 mod play;
 mod records;

@@ -52,12 +52,12 @@ impl Paced<'_> {
     }
 
     /// Share of the stride a leg's hoof is down.
-    fn duty(&self, limb: usize) -> f32 {
+    pub(super) fn duty(&self, limb: usize) -> f32 {
         let stored = self.way.stored(limb);
         self.mix(|clip| clip.duties[stored] * clip.speed_m_s * clip.stride_time_s) / self.length_m()
     }
 
-    fn print_m(&self, limb: usize) -> f32 {
+    pub(super) fn print_m(&self, limb: usize) -> f32 {
         let stored = self.way.stored(limb);
         self.mix(|clip| clip.prints_m[stored])
     }
@@ -73,7 +73,7 @@ impl Paced<'_> {
     }
 
     /// Adds `weight` times a leg whose cycle from strike to strike is at `cycle` of a mixture with this duty factor.
-    fn add_leg(&self, limb: usize, cycle: f32, duty: f32, weight: f32, sum: &mut LegRow) {
+    pub(super) fn add_leg(&self, limb: usize, cycle: f32, duty: f32, weight: f32, sum: &mut LegRow) {
         let stored = self.way.stored(limb);
         for (clip, share) in [(self.slower, 1.0 - self.share), (self.faster, self.share)] {
             if share > 0.0 {

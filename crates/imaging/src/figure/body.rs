@@ -23,6 +23,8 @@ pub(super) enum Tone {
     Eye,
     /// A leg from elbow or gaskin down.
     Limb(Limb),
+    /// A colour of its own.
+    Own([u8; 3]),
 }
 
 /// A part of the body.

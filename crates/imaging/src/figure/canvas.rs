@@ -44,6 +44,25 @@ impl<P: Copy + Default> Canvas<P> {
         start..rows.iter().map(|columns| columns.end).max().unwrap_or(0).max(start)
     }
 
+    /// Closes slits of a pixel or two between surfaces that should touch: they are painted like the pixel to their left.
+    pub(super) fn close_slits(&mut self) {
+        const WIDEST: usize = 2;
+        let width = self.size[0].max(1);
+        for (depths, pixels) in self.depths.chunks_exact_mut(width).zip(self.pixels.chunks_exact_mut(width)) {
+            let mut x = 1;
+            while x < width {
+                let slit = depths[x..].iter().take_while(|depth| **depth <= 0.0).count();
+                if depths[x - 1] > 0.0 && (1..=WIDEST).contains(&slit) && x + slit < width {
+                    depths.copy_within(x - 1..x, x);
+                    pixels.copy_within(x - 1..x, x);
+                    x += 1;
+                } else {
+                    x += slit.max(1);
+                }
+            }
+        }
+    }
+
     /// Draws a triangle that is counter-clockwise as seen (y pointing down the screen); others are seen from behind. `paint` makes
     /// a pixel of the value between the corners'.
     pub(super) fn triangle(&mut self, corners: [Corner; 3], paint: impl Fn(Vec3) -> P) {
@@ -135,6 +154,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn slits_are_closed_and_the_sky_is_not() {
+        let mut canvas = Canvas::<u8>::new([0, 0], [8, 2]);
+        canvas.depths =
+            [[1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0]].concat();
+        canvas.close_slits();
+        let seen: Vec<u8> = canvas.depths.iter().map(|depth| u8::from(*depth > 0.0)).collect();
+        assert_eq!(seen, [1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1]);
     }
 
     #[test]

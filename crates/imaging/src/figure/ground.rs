@@ -1,4 +1,4 @@
-//! What is seen on the ground: grid, shadows, standing hooves and the polygon between them.
+//! What is seen on the ground: grid, footprints, shadows, standing hooves and the polygon between them.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use super::canvas::Canvas;
 use super::frames::Frames;
 use super::scene::Cell;
 use super::terrain::Floor;
-use super::{Figure, FigureColors, Scene, Terrain};
+use super::{Decal, Figure, FigureColors, Scene, Terrain, Tube};
 
 /// The ground fades from here to there, in distances of the camera from its target.
 const FADE: [f32; 2] = [2.0, 7.0];
@@ -36,6 +36,8 @@ const HOOF_SHADOW_GONE_M: f32 = 0.6;
 const LEAST_OPACITY: f32 = 0.002;
 /// Opacity of a disc or a polygon, and of its rim, and the rim's thickness, metres.
 const FILL: f32 = 0.38;
+/// Opacity of a footprint.
+const PRINT: f32 = 0.7;
 const RIM: f32 = 0.9;
 const RIM_M: f32 = 0.014;
 
@@ -46,8 +48,14 @@ const LEAST_BAND_PX: usize = 40_000;
 /// On a slope, what is within a circle as seen from above is within one so much larger.
 const ON_SLOPES: f32 = 1.5;
 
+/// The shadow of a tube in contact with the ground, and the height at which it is half as dark, in half widths.
+const TUBE_SHADOW: f32 = 0.26;
+const TUBE_SHADOW_HALF: f32 = 5.0;
+/// A shadow's edge gets so much softer with height: metres for each metre.
+const PENUMBRA: f32 = 0.06;
+
 /// Something on the ground, seen from above: x and z, metres.
-struct Decal {
+struct Mark {
     shape: Shape,
     color: Vec3,
     /// All of it is within this circle.
@@ -65,6 +73,8 @@ enum Shape {
     Disc,
     /// Convex.
     Polygon(Vec<Vec2>),
+    /// Of any form.
+    Outline(Vec<Vec2>),
 }
 
 /// Paints the ground over the picture.
@@ -75,7 +85,7 @@ pub(super) fn paint(
     ground: &Canvas<f32>,
     picture: &mut [Cell],
 ) {
-    let decals = Decals::of(scene, figures, camera);
+    let marks = Marks::of(scene, figures, camera);
     let painter = Painter::new(scene, camera, ground);
     let width = ground.size[0];
     in_bands(picture, width, |from, band| {
@@ -86,7 +96,7 @@ pub(super) fn paint(
         for (i, cells) in band.chunks_exact_mut(width).enumerate() {
             painter.places(from + i, &mut row);
             painter.cover(from + i, &row, cells);
-            decals.paint(from + i, &row, cells);
+            marks.paint(from + i, &row, cells);
         }
     });
 }
@@ -250,13 +260,17 @@ pub(super) fn in_bands<P: Send>(pixels: &mut [P], width: usize, work: impl Fn(us
 }
 
 /// All that is on the ground, and the columns and rows of the picture around each.
-struct Decals(Vec<(Decal, [Range<usize>; 2])>);
+struct Marks(Vec<(Mark, [Range<usize>; 2])>);
 
-impl Decals {
+impl Marks {
     fn of(scene: &Scene<'_>, figures: &[(&Figure, Frames)], camera: &Camera) -> Self {
         let mut all = Vec::new();
         let floor = Floor(scene.terrain);
         let is_hidden = matches!(scene.terrain, Terrain::Hidden);
+        if !is_hidden {
+            all.extend(scene.decals.iter().filter_map(decal));
+            all.extend(scene.tubes.iter().filter_map(|tube| tube_shadow(tube, floor)));
+        }
         for (figure, frames) in figures.iter().filter(|(figure, _)| !figure.ghost && !is_hidden) {
             shadows(figure, frames, floor, &mut all);
             if scene.support_polygon {
@@ -268,22 +282,22 @@ impl Decals {
             let below = floor.surface(Vec3::new(at.x, height, at.y));
             Vec3::new(at.x, below.height_m, at.y)
         };
-        let around = |decal: &Decal| camera.around(on_ground(decal.middle), decal.radius * ON_SLOPES);
-        Self(all.into_iter().filter_map(|decal| around(&decal).map(|around| (decal, around))).collect())
+        let around = |mark: &Mark| camera.around(on_ground(mark.middle), mark.radius * ON_SLOPES);
+        Self(all.into_iter().filter_map(|mark| around(&mark).map(|around| (mark, around))).collect())
     }
 
     fn paint(&self, y: usize, row: &Row, cells: &mut [Cell]) {
-        for (decal, [columns, rows]) in &self.0 {
+        for (mark, [columns, rows]) in &self.0 {
             if rows.contains(&y) {
                 for x in columns.start..columns.end.min(cells.len()) {
-                    decal.paint(row.spot(x), &mut cells[x].pixel);
+                    mark.paint(row.spot(x), &mut cells[x].pixel);
                 }
             }
         }
     }
 }
 
-impl Decal {
+impl Mark {
     fn paint(&self, (at, px_m): (Vec2, f32), pixel: &mut [u8; 4]) {
         let from_middle = at - self.middle;
         // A spot that is no number is not inside either.
@@ -298,8 +312,9 @@ impl Decal {
                 let inside = (1.0 - turned.length_squared()).max(0.0);
                 opacity * inside * inside * (3.0 - 2.0 * inside)
             }
-            Shape::Disc => rimmed(from_middle.length() - DISC_M, px_m),
-            Shape::Polygon(corners) => rimmed(outside(corners, at), px_m),
+            Shape::Disc => rimmed(from_middle.length() - DISC_M, px_m, FILL),
+            Shape::Polygon(corners) => rimmed(outside(corners, at), px_m, FILL),
+            Shape::Outline(corners) => rimmed(outside_any(corners, at), px_m, PRINT),
         };
         if opacity > LEAST_OPACITY {
             let alpha = pixel[3];
@@ -309,11 +324,11 @@ impl Decal {
     }
 }
 
-/// Opacity of a shape this far beyond its edge (metres).
-fn rimmed(outside: f32, px_m: f32) -> f32 {
+/// Opacity of a shape this far beyond its edge (metres), which covers so much inside.
+fn rimmed(outside: f32, px_m: f32, fill: f32) -> f32 {
     let cover = |outside: f32| (0.5 - outside / px_m).clamp(0.0, 1.0);
     let rim = cover(outside.abs() - RIM_M.max(px_m) / 2.0);
-    (FILL * cover(outside)).max(RIM * rim)
+    (fill * cover(outside)).max(RIM * rim)
 }
 
 /// How far a place is outside a convex polygon, metres; negative inside. Two corners make a line.
@@ -329,38 +344,76 @@ fn outside(corners: &[Vec2], at: Vec2) -> f32 {
     if furthest > 0.0 || corners.len() < 3 { nearest } else { -nearest }
 }
 
+/// How far a place is outside a polygon of any form, metres; negative inside.
+fn outside_any(corners: &[Vec2], at: Vec2) -> f32 {
+    let (mut is_inside, mut nearest) = (false, f32::INFINITY);
+    for i in 0..corners.len() {
+        let (from, to) = (corners[i], corners[(i + 1) % corners.len()]);
+        let edge = to - from;
+        let share = ((at - from).dot(edge) / edge.length_squared().max(1e-9)).clamp(0.0, 1.0);
+        nearest = nearest.min(at.distance(from + edge * share));
+        if (from.y > at.y) != (to.y > at.y) && at.x < from.x + edge.x * (at.y - from.y) / edge.y {
+            is_inside = !is_inside;
+        }
+    }
+    if is_inside { -nearest } else { nearest }
+}
+
+/// A shape to paint; none without three corners.
+fn decal(decal: &Decal) -> Option<Mark> {
+    let corners: Vec<Vec2> =
+        decal.points.iter().filter(|point| point.is_finite()).copied().map(level).collect();
+    if corners.len() < 3 {
+        return None;
+    }
+    let middle = corners.iter().sum::<Vec2>() / corners.len() as f32;
+    let radius = corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f32::max) + RIM_M * 2.0;
+    Some(Mark { shape: Shape::Outline(corners), color: color(decal.color), middle, radius })
+}
+
+/// What a tube takes of the sky's light from the ground below it: the higher it is, the wider and fainter.
+fn tube_shadow(tube: &Tube, floor: Floor<'_>) -> Option<Mark> {
+    let (ends, wide_m) = tube.extent()?;
+    let middle = (ends[0] + ends[1]) / 2.0;
+    let height_m = (middle.y - floor.surface(middle).height_m - wide_m).max(0.0);
+    let soft_m = wide_m + PENUMBRA * height_m;
+    let half_length_m = level(ends[1] - ends[0]).length() / 2.0;
+    let opacity = TUBE_SHADOW / (1.0 + height_m / (TUBE_SHADOW_HALF * wide_m.max(0.01)));
+    Some(shadow(ends, [half_length_m + 1.4 * soft_m, 1.4 * soft_m], opacity))
+}
+
 fn level(point: Vec3) -> Vec2 {
     Vec2::new(point.x, point.z)
 }
 
-fn shadow(ends: [Vec3; 2], half_axes_m: [f32; 2], opacity: f32) -> Decal {
+fn shadow(ends: [Vec3; 2], half_axes_m: [f32; 2], opacity: f32) -> Mark {
     let [from, to] = ends.map(level);
     let half_axes = Vec2::from(half_axes_m);
     let along = (to - from).normalize_or(Vec2::X);
     let shape = Shape::Shadow { half_axes, along, opacity };
-    Decal { shape, color: Vec3::ZERO, middle: (from + to) / 2.0, radius: half_axes.max_element() }
+    Mark { shape, color: Vec3::ZERO, middle: (from + to) / 2.0, radius: half_axes.max_element() }
 }
 
-fn shadows(figure: &Figure, frames: &Frames, floor: Floor<'_>, decals: &mut Vec<Decal>) {
+fn shadows(figure: &Figure, frames: &Frames, floor: Floor<'_>, marks: &mut Vec<Mark>) {
     let joints = &figure.joints;
     let scaled = |axes: [f32; 2]| axes.map(|v| v * frames.size);
     let (withers, muzzle) = (joints.tips[bone::SPINE_LAST], joints.tips[bone::HEAD]);
-    decals.push(shadow(
+    marks.push(shadow(
         [joints.dock, withers + (withers - joints.root) * 0.2],
         scaled(TRUNK_SHADOW_M),
         TRUNK_SHADOW,
     ));
-    decals.push(shadow([withers, muzzle], scaled(HEAD_SHADOW_M), HEAD_SHADOW));
+    marks.push(shadow([withers, muzzle], scaled(HEAD_SHADOW_M), HEAD_SHADOW));
     for limb in Limb::ALL {
         let (toe, fetlock) = (joints.toe(limb), joints.bases[limb.hoof_bone()]);
         let height = (toe.y - floor.surface(toe).height_m).max(0.0) / frames.size;
         let near = (1.0 - height / HOOF_SHADOW_GONE_M).max(0.0);
-        decals.push(shadow([toe, fetlock], scaled([HOOF_SHADOW_M, HOOF_SHADOW_M * 0.7]), HOOF_SHADOW * near));
+        marks.push(shadow([toe, fetlock], scaled([HOOF_SHADOW_M, HOOF_SHADOW_M * 0.7]), HOOF_SHADOW * near));
     }
 }
 
 /// The polygon between the standing hooves, and a disc under each.
-fn stance(figure: &Figure, colors: &FigureColors, filmed: Side, decals: &mut Vec<Decal>) {
+fn stance(figure: &Figure, colors: &FigureColors, filmed: Side, marks: &mut Vec<Mark>) {
     let standing = || Limb::ALL.into_iter().filter(|limb| figure.standing[limb.index()]);
     let mut feet: Vec<Vec2> = standing().map(|limb| level(figure.joints.toe(limb))).collect();
     let middle = feet.iter().sum::<Vec2>() / feet.len().max(1) as f32;
@@ -368,12 +421,12 @@ fn stance(figure: &Figure, colors: &FigureColors, filmed: Side, decals: &mut Vec
     feet.sort_by(|a, b| angle(b).total_cmp(&angle(a)));
     if feet.len() > 1 {
         let radius = feet.iter().map(|foot| foot.distance(middle)).fold(0.0, f32::max) + RIM_M * 2.0;
-        decals.push(Decal { shape: Shape::Polygon(feet), color: color(colors.trunk), middle, radius });
+        marks.push(Mark { shape: Shape::Polygon(feet), color: color(colors.trunk), middle, radius });
     }
     for limb in standing() {
         let color = color(colors.limb(limb, filmed));
         let middle = level(figure.joints.toe(limb));
-        decals.push(Decal { shape: Shape::Disc, color, middle, radius: DISC_M + RIM_M * 2.0 });
+        marks.push(Mark { shape: Shape::Disc, color, middle, radius: DISC_M + RIM_M * 2.0 });
     }
 }
 

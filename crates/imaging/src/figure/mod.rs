@@ -1,4 +1,5 @@
-//! The horse in three dimensions: a body skinned on the skeleton's joints, on a ground with a grid, in one z-buffer.
+//! Figures in three dimensions, on a ground with a grid, in one z-buffer: the horse, a body skinned on the skeleton's joints, and others,
+//! made of tubes.
 //!
 //! World space as everywhere: X forward, Y up, Z to the right of a horse that faces X, metres.
 //! Equal scenes give equal pixels: in a window, in a test and on the command line.
@@ -13,11 +14,13 @@ mod hoof;
 mod loft;
 mod scene;
 mod sections;
+mod stepped;
 mod terrain;
 #[cfg(test)]
 mod tests;
+mod tube;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use image::RgbaImage;
 use muybridge_core::{Joints, Side};
 
@@ -79,6 +82,8 @@ pub enum Terrain<'a> {
     Flat,
     /// Height (metres) over x and z (metres). Places whose height is not finite are holes.
     Height(&'a dyn Fn(f32, f32) -> f32),
+    /// The same with edges, such as stairs: where it is not smooth it is looked at closely, which takes longer.
+    Stepped(&'a dyn Fn(f32, f32) -> f32),
 }
 
 /// A line in world space, such as the way of a hoof.
@@ -90,11 +95,37 @@ pub struct Trace<'a> {
     pub color: [u8; 3],
 }
 
+/// A body, or a part of one: elliptical sections with a smooth skin over them, and rounded ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tube {
+    /// Middles of the sections, world space, metres. Those that are no numbers are left out; fewer than two are not drawn.
+    pub points: Vec<Vec3>,
+    /// Half width (across `up`) and half height (along it) of each section, metres.
+    pub radii_m: Vec<Vec2>,
+    /// What is up for the sections.
+    pub up: Vec3,
+    /// Red, green and blue.
+    pub color: [u8; 3],
+}
+
+/// A shape painted on the ground, such as a footprint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decal {
+    /// Its outline, world space, metres; the ground below it is painted. Corners that are no numbers are left out.
+    pub points: Vec<Vec3>,
+    /// Red, green and blue.
+    pub color: [u8; 3],
+}
+
 /// All that is in a picture.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
     /// The horses. One with joints that are no numbers is left out.
     pub figures: &'a [Figure],
+    /// Bodies that are no horses, lit as these are.
+    pub tubes: &'a [Tube],
+    /// Shapes on the ground.
+    pub decals: &'a [Decal],
     /// Which side of the horse has the colour [`FigureColors::near`].
     pub filmed: Side,
     /// The ground.

@@ -10,7 +10,7 @@ use super::canvas::{Canvas, Corner};
 use super::frames::Frames;
 use super::ground::{self, blend, color, in_bands, opaque};
 use super::terrain::Floor;
-use super::{Figure, FigureColors, Scene, Trace};
+use super::{Figure, FigureColors, Scene, Trace, Tube};
 
 /// How much a ghost covers what is behind it, and how much of it is seen through what is before it.
 const GHOST_OPACITY: [f32; 2] = [0.6, 0.25];
@@ -39,6 +39,7 @@ impl FigureColors {
             Tone::Limb(limb) => color(self.limb(limb, filmed)),
             Tone::Hoof => HOOF,
             Tone::Eye => EYE,
+            Tone::Own(own) => color(own),
         }
     }
 }
@@ -69,8 +70,9 @@ pub(super) fn render(scene: &Scene<'_>, camera: &Camera, size: [usize; 2], smoot
     let finer = if smooth { 2 } else { 1 };
     let drawer = Drawer { scene, camera: camera.finer(finer as f32), finer };
     let solid = figures.iter().filter(|(figure, _)| !figure.ghost);
-    let solid: Vec<Part> =
+    let mut solid: Vec<Part> =
         solid.flat_map(|(figure, frames)| parts(frames, figure.standing, &floor)).collect();
+    solid.extend(scene.tubes.iter().filter_map(Tube::part));
     drawer.draw(&solid, &mut picture, None);
     for (figure, frames) in figures.iter().filter(|(figure, _)| figure.ghost) {
         drawer.draw(&bones(&figure.joints, frames), &mut picture, Some(GHOST_OPACITY));

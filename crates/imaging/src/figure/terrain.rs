@@ -6,6 +6,7 @@ use muybridge_core::{Ground, Surface};
 use super::Terrain;
 use super::camera::Camera;
 use super::canvas::{Canvas, Corner};
+use super::stepped::Closely;
 
 /// The mesh of the ground has squares of several sizes, the smallest around the target: so many sizes, each twice the one before,
 /// and so many squares from the middle to the edge.
@@ -26,15 +27,25 @@ pub(super) struct Floor<'a>(pub(super) Terrain<'a>);
 
 /// A corner of the mesh.
 #[derive(Clone, Copy)]
-struct Node {
-    at: Vec3,
-    light: f32,
+pub(super) struct Node {
+    pub(super) at: Vec3,
+    pub(super) light: f32,
+}
+
+/// How bright the ground is where it rises so much along X and Z, metres for each metre.
+pub(super) fn light(slope: [f32; 2]) -> f32 {
+    let normal = Vec3::new(-slope[0], 1.0, -slope[1]).normalize_or(Vec3::Y);
+    let light = 1.0 + RELIEF * (normal.dot(SUN) - SUN.y);
+    light.clamp(RELIEF_BOUNDS[0], RELIEF_BOUNDS[1])
 }
 
 impl Floor<'_> {
     /// Height at a place, metres; what is no number is a hole.
     fn height_m(&self, x: f32, z: f32) -> f32 {
-        if let Terrain::Height(height) = self.0 { height(x, z) } else { 0.0 }
+        match self.0 {
+            Terrain::Height(height) | Terrain::Stepped(height) => height(x, z),
+            Terrain::Hidden | Terrain::Flat => 0.0,
+        }
     }
 
     /// The ground below a point; below is nothing but a hole, it is level ground at the point.
@@ -52,6 +63,10 @@ impl Floor<'_> {
             Terrain::Hidden => {}
             Terrain::Flat => flat(&mut canvas, camera),
             Terrain::Height(_) => self.mesh(&mut canvas, camera),
+            Terrain::Stepped(_) => {
+                self.mesh(&mut canvas, camera);
+                canvas.close_slits();
+            }
         }
         canvas
     }
@@ -64,15 +79,24 @@ impl Floor<'_> {
             let square = finest * (1 << level) as f32;
             let target = camera.target();
             let middle = [target.x, target.z].map(|v| 2 * (v / (2.0 * square)).round() as i32);
-            let nodes = self.nodes(middle, square);
             // The squares of the level before have an edge half as long.
             let hole = inner.map(|inner| inner.map(|v| v / 2));
-            draw_level(canvas, camera, &nodes, |i, k| {
+            let left_out = |i: i32, k: i32| {
                 hole.is_some_and(|hole| {
                     let within = |at: i32, hole: i32| (hole - REACH / 2..hole + REACH / 2).contains(&at);
                     within(middle[0] + i, hole[0]) && within(middle[1] + k, hole[1])
                 })
-            });
+            };
+            if let Terrain::Stepped(height) = self.0 {
+                let closely = Closely::new(height, camera);
+                let kept = (-REACH..REACH).flat_map(|i| (-REACH..REACH).map(move |k| (i, k)));
+                for (i, k) in kept.filter(|&(i, k)| !left_out(i, k)) {
+                    let corner = [middle[0] + i, middle[1] + k].map(|v| v as f32 * square);
+                    closely.square(canvas, corner, square);
+                }
+            } else {
+                draw_level(canvas, camera, &self.nodes(middle, square), left_out);
+            }
             inner = Some(middle);
         }
     }
@@ -97,11 +121,9 @@ impl Floor<'_> {
                     let slope = rise / (2.0 * square);
                     if slope.is_finite() { slope } else { 0.0 }
                 });
-            let normal = Vec3::new(-slope[0], 1.0, -slope[1]).normalize_or(Vec3::Y);
-            let light = 1.0 + RELIEF * (normal.dot(SUN) - SUN.y);
             Node {
                 at: Vec3::new(place(i as i32, middle[0]), height(i, k), place(k as i32, middle[1])),
-                light: light.clamp(RELIEF_BOUNDS[0], RELIEF_BOUNDS[1]),
+                light: light(slope),
             }
         };
         (1..=last).map(|i| (1..=last).map(|k| node(i, k)).collect()).collect()
@@ -138,7 +160,7 @@ fn draw_level(
 }
 
 /// Draws the part of a triangle that is not too near.
-fn draw_clipped(canvas: &mut Canvas<f32>, camera: &Camera, triangle: [Node; 3]) {
+pub(super) fn draw_clipped(canvas: &mut Canvas<f32>, camera: &Camera, triangle: [Node; 3]) {
     let mut kept: Vec<Node> = Vec::new();
     if triangle.iter().all(|node| camera.clearance_m(node.at) > 0.0) {
         kept.extend(triangle);

@@ -1,6 +1,6 @@
 //! The horse as it is seen.
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use image::{Rgba, RgbaImage, imageops};
 use muybridge_core::{Database, Gait, Limb, Pose, Side, Skeleton, bone};
 
@@ -9,7 +9,7 @@ use super::canvas::{Canvas, Corner};
 use super::frames::Frames;
 use super::hoof::Hoof;
 use super::terrain::Floor;
-use super::{Camera, Figure, FigureColors, Scene, Terrain, Trace, render};
+use super::{Camera, Decal, Figure, FigureColors, Scene, Terrain, Trace, Tube, render};
 
 const COLORS: FigureColors = FigureColors {
     near: [230, 120, 40],
@@ -32,6 +32,8 @@ fn standing() -> Figure {
 fn scene<'a>(figures: &'a [Figure], terrain: Terrain<'a>) -> Scene<'a> {
     Scene {
         figures,
+        tubes: &[],
+        decals: &[],
         filmed: Side::Right,
         terrain,
         grid_m: 1.0,
@@ -223,7 +225,7 @@ fn a_ghost_is_seen_through() {
 #[test]
 fn the_ground_reaches_the_lower_edge_and_fades_into_the_distance() {
     let hill = |x: f32, z: f32| 0.2 * (x + z).sin();
-    for terrain in [Terrain::Flat, Terrain::Height(&hill)] {
+    for terrain in [Terrain::Flat, Terrain::Height(&hill), Terrain::Stepped(&hill)] {
         let picture = render(&scene(&[standing()], terrain), &camera(0.4, SIZE), SIZE, false);
         let [width, height] = SIZE.map(|v| v as u32);
         assert!((0..width).all(|x| picture.get_pixel(x, height - 1)[3] == 255), "a hole below");
@@ -260,6 +262,72 @@ fn a_hill_hides_what_is_behind_it_and_traces_are_hidden_by_the_horse() {
 }
 
 #[test]
+fn tubes_are_drawn_and_hidden_like_the_horse_and_leave_a_shadow() {
+    let green = |z: f32| Tube {
+        points: vec![Vec3::new(-1.0, 1.2, z), Vec3::new(0.6, 1.2, z), Vec3::new(2.2, 1.2, z)],
+        radii_m: vec![Vec2::splat(0.15); 3],
+        up: Vec3::Y,
+        color: [40, 220, 60],
+    };
+    let seen = |z: f32| {
+        let (figures, tubes) = ([standing()], [green(z)]);
+        let scene = Scene { tubes: &tubes, ..scene(&figures, Terrain::Hidden) };
+        let picture = render(&scene, &camera(0.0, SIZE), SIZE, true);
+        picture.pixels().filter(|pixel| pixel[1] > 90 && pixel[0] < pixel[1] / 2).count()
+    };
+    assert!(seen(1.0) > 3000 && 3 * seen(-0.6) < 2 * seen(1.0), "{} {}", seen(1.0), seen(-0.6));
+    let ground = |tubes: &[Tube]| {
+        let picture = render(&Scene { tubes, ..scene(&[], Terrain::Flat) }, &camera(0.0, SIZE), SIZE, true);
+        let at = camera(0.0, SIZE).project(Vec3::new(0.9, 0.0, 0.0)).unwrap();
+        picture.get_pixel(at.x as u32, at.y as u32).0[0]
+    };
+    let low = Tube { points: vec![Vec3::new(0.0, 0.4, 0.0), Vec3::new(1.2, 0.4, 0.0)], ..green(0.0) };
+    assert!(ground(&[low]) + 10 < ground(&[]));
+}
+
+#[test]
+fn a_print_is_painted_on_the_ground_inside_its_outline_only() {
+    // A horseshoe: its middle is open towards X.
+    let outline =
+        [(0.0, -0.5), (1.0, -0.5), (1.0, -0.3), (0.3, -0.3), (0.3, 0.3), (1.0, 0.3), (1.0, 0.5), (0.0, 0.5)];
+    let mut points: Vec<Vec3> = outline.map(|(x, z)| Vec3::new(x, 0.3, z)).to_vec();
+    points.insert(3, Vec3::NAN);
+    let step = |_: f32, _: f32| 0.3;
+    let camera = Camera::orbit(Vec3::new(0.5, 0.3, 0.0), 0.0, 1.4, 2.0, SIZE.map(|v| v as f32));
+    for terrain in [Terrain::Height(&step), Terrain::Stepped(&step)] {
+        let decals = [Decal { points: points.clone(), color: [255, 0, 0] }];
+        let bare = render(&scene(&[], terrain), &camera, SIZE, true);
+        let scene = Scene { decals: &decals, ..scene(&[], terrain) };
+        let picture = render(&scene, &camera, SIZE, true);
+        let is_painted = |x: f32, z: f32| {
+            let at = camera.project(Vec3::new(x, 0.3, z)).unwrap();
+            picture.get_pixel(at.x as u32, at.y as u32) != bare.get_pixel(at.x as u32, at.y as u32)
+        };
+        assert!(is_painted(0.15, 0.1) && is_painted(0.7, -0.4) && is_painted(0.7, 0.4));
+        assert!(!is_painted(0.7, 0.1) && !is_painted(-0.1, 0.1) && !is_painted(1.2, 0.4));
+    }
+}
+
+#[test]
+fn the_edge_of_a_step_is_where_it_is() {
+    let stairs = |x: f32, _: f32| (x / 0.3).floor().clamp(0.0, 6.0) * 0.2;
+    let size = [480, 360];
+    let camera = Camera::orbit(Vec3::new(0.9, 0.6, 0.0), -0.9, 0.5, 4.0, size.map(|v| v as f32));
+    let picture = render(&scene(&[], Terrain::Stepped(&stairs)), &camera, size, true);
+    let value = |x: f32, y: f32, z: f32| {
+        let at = camera.project(Vec3::new(x, y, z)).unwrap();
+        picture.get_pixel(at.x as u32, at.y as u32)[0]
+    };
+    for step in 1..6 {
+        let (edge, height) = (0.3 * step as f32, 0.2 * step as f32);
+        for z in [-0.23, 0.31] {
+            let (tread, riser) = (value(edge + 0.05, height, z), value(edge, height - 0.1, z));
+            assert!(tread > riser + 15, "step {step}: tread {tread}, riser {riser}");
+        }
+    }
+}
+
+#[test]
 fn what_is_no_number_and_pictures_of_no_size_do_no_harm() {
     let hole = |x: f32, _: f32| if x > 0.0 { f32::NAN } else { 0.0 };
     let mut broken = standing();
@@ -268,8 +336,8 @@ fn what_is_no_number_and_pictures_of_no_size_do_no_harm() {
     let traces = [Trace { points: &points, color: [0; 3] }];
     for figures in [vec![broken], vec![broken, standing()], vec![]] {
         for size in [[0, 0], [0, 7], [7, 0], [1, 1], [90, 70]] {
-            let scene =
-                Scene { traces: &traces, grid_m: f32::NAN, ..scene(&figures, Terrain::Height(&hole)) };
+            let terrain = if size[0] > 1 { Terrain::Height(&hole) } else { Terrain::Stepped(&hole) };
+            let scene = Scene { traces: &traces, grid_m: f32::NAN, ..scene(&figures, terrain) };
             let drawn = render(&scene, &camera(0.3, size.map(|v: usize| v.max(1))), size, true);
             assert_eq!(drawn.dimensions(), (size[0] as u32, size[1] as u32));
         }

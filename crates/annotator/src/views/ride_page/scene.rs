@@ -131,6 +131,8 @@ pub(super) fn show(ui: &mut Ui, ride: &RideSession, view: &mut View) {
     let Some(follow) = follow(ride, rider, [Some(first), beside], &terrain) else { return };
     let parts = SceneParts {
         figures: &figures,
+        tubes: &[],
+        decals: &[],
         terrain: if terrain.is_plain() { DrawnTerrain::Flat } else { DrawnTerrain::Height(&height) },
         terrain_version: view.ground_version(terrain),
         grid_m: GRID_M,
@@ -206,7 +208,7 @@ fn ways(view: &View, ride: &RideSession) -> Vec<(Vec<Vec3>, [u8; 3])> {
 }
 
 /// A scene that suits the window.
-pub(super) fn scene_colors(is_dark: bool) -> FigureColors {
+pub(in crate::views) fn scene_colors(is_dark: bool) -> FigureColors {
     let (ground, sky) =
         if is_dark { ([104, 100, 92], [44, 52, 62, 255]) } else { ([200, 184, 154], [214, 225, 235, 255]) };
     FigureColors { near: NEAR, off: OFF, trunk: BAY, ground, sky: Some(sky) }

@@ -11,7 +11,7 @@ use muybridge_fitting::foot_phase_check::foot_phase_table;
 use muybridge_fitting::report::time_warping_plot::warping_plot;
 use muybridge_fitting::ride_checks::changes::{ChangeTable, START_PHASES};
 
-use super::output::print;
+use super::super::output::print;
 
 /// Arguments of `warping`.
 #[derive(Debug, Args)]

@@ -4,8 +4,8 @@ use clap::Args;
 use comfy_table::{CellAlignment, Table, presets::UTF8_FULL_CONDENSED};
 use muybridge_core::{Command, Gait, Limb, MPS_PER_MPH, Pair, Pose, Skeleton};
 
+use super::super::output::print;
 use super::options::HorseOptions;
-use super::output::print;
 use super::ride::Ride;
 use crate::ride_script::{RideScript, RideStep};
 

@@ -2,15 +2,14 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Args;
-use gif::{DisposalMethod, Encoder, Repeat};
 use image::{Rgb, RgbImage, imageops};
 use muybridge_capture::write_atomically;
 
+use super::super::animation::{animation, check_size, delay, fps, slow};
 use super::super::canvas::Canvas;
 use super::options::RideOptions;
-use super::palette::Palette;
 use super::picture::{Photographer, ViewOptions, caption, write_line};
 use super::ride::Ride;
 use super::strip::moment;
@@ -24,12 +23,8 @@ const ASPECT: [u32; 2] = [8, 5];
 /// A gait is shown for about so long when nothing is said, s, and of a ride so much at most.
 const GAIT_S: f64 = 2.0;
 const RIDE_S: f64 = 6.0;
-/// Colours: fewer are smaller files, and with half as many the shades of the horse show as bands.
-const COLORS: usize = 127;
 /// Lines on the ground are about so far apart, m; a loop goes over a whole number of them.
 const GRID_M: f64 = 1.0;
-/// Largest animation, px of all its pictures: what is held in memory at once, 3 bytes each.
-const LARGEST_PX: f64 = 200e6;
 
 /// Arguments of `gif`.
 #[derive(Debug, Args)]
@@ -58,16 +53,6 @@ pub(in crate::commands) struct GifArguments {
     slow: f64,
 }
 
-fn fps(text: &str) -> Result<f64, String> {
-    let fps: f64 = text.parse().map_err(|_| "not a number".to_string())?;
-    if (1.0..=50.0).contains(&fps) { Ok(fps) } else { Err("between 1 and 50 pictures a second".into()) }
-}
-
-fn slow(text: &str) -> Result<f64, String> {
-    let slow: f64 = text.parse().map_err(|_| "not a number".to_string())?;
-    if (0.1..=100.0).contains(&slow) { Ok(slow) } else { Err("between 0.1 and 100 times".into()) }
-}
-
 /// Which pictures are taken.
 struct Plan {
     pictures: u32,
@@ -86,14 +71,7 @@ impl GifArguments {
         }
         let plan = self.plan(&ride)?;
         let size = [self.width, self.width * ASPECT[1] / ASPECT[0]];
-        let pixels = f64::from(size[0]) * f64::from(size[1] + CAPTION) * f64::from(plan.pictures);
-        if pixels > LARGEST_PX {
-            bail!(
-                "{} pictures of {} px are too many; take fewer seconds or a smaller width",
-                plan.pictures,
-                size[0]
-            );
-        }
+        check_size(plan.pictures, [size[0], size[1] + CAPTION])?;
         let photographer = Photographer::new(self.view, &ride, size).with_grid(plan.grid_m);
         let mut pictures = Vec::new();
         for index in 0..plan.pictures {
@@ -102,7 +80,7 @@ impl GifArguments {
             }
             pictures.push(with_caption(&photographer, &ride));
         }
-        let bytes = encode(&pictures, plan.delay).context("cannot encode the animation")?;
+        let bytes = animation(&pictures, plan.delay)?;
         write_atomically(&self.out, &bytes)?;
         println!(
             "{}: {} pictures, {:.2} s, {:.0} kB",
@@ -115,12 +93,12 @@ impl GifArguments {
     }
 
     fn plan(&self, ride: &Ride) -> anyhow::Result<Plan> {
-        let delay = (100.0 / self.fps).round();
-        let wanted_every_s = 0.01 * delay / self.slow;
+        let delay = delay(self.fps);
+        let wanted_every_s = 0.01 * f64::from(delay) / self.slow;
         let plan = |pictures: f64, every_s: f64, grid_m: f64| Plan {
             pictures: pictures.max(1.0) as u32,
             every_s,
-            delay: delay as u16,
+            delay,
             grid_m: grid_m as f32,
         };
         if !ride.is_one_gait() {
@@ -152,36 +130,4 @@ fn with_caption(photographer: &Photographer, ride: &Ride) -> RgbImage {
         if ride.is_one_gait() { format!("{doing}  {speed}") } else { format!("{time}  {speed}  {doing}") };
     write_line(&mut canvas, [4, picture.height() + 3], picture.width() - 4, &words, INK);
     canvas.picture
-}
-
-/// All pictures with one palette, for ever; pixels that stay are left as they are.
-fn encode(pictures: &[RgbImage], delay: u16) -> Result<Vec<u8>, gif::EncodingError> {
-    let palette = Palette::choose(pictures, COLORS);
-    // The place after the last colour stands for a pixel that stays.
-    let stays = palette.len() as u8;
-    let [width, height] =
-        pictures.first().map_or([1, 1], |first| [first.width() as u16, first.height() as u16]);
-    let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, height, &[palette.bytes(), vec![0; 3]].concat())?;
-    encoder.set_repeat(Repeat::Infinite)?;
-    let mut shown: Option<Vec<u8>> = None;
-    for picture in pictures {
-        let indices = palette.indices(picture);
-        let changed = match &shown {
-            Some(shown) => {
-                indices.iter().zip(shown).map(|(new, old)| if new == old { stays } else { *new }).collect()
-            }
-            None => indices.clone(),
-        };
-        let transparent = shown.is_some().then_some(stays);
-        let mut frame = gif::Frame::from_indexed_pixels(width, height, changed, transparent);
-        // The encoder's own palette of the whole file is used.
-        frame.palette = None;
-        frame.delay = delay;
-        frame.dispose = DisposalMethod::Keep;
-        encoder.write_frame(&frame)?;
-        shown = Some(indices);
-    }
-    drop(encoder);
-    Ok(bytes)
 }

@@ -124,6 +124,8 @@ impl Photographer {
         let colors = colors(frame.readout.change.is_some());
         let scene = Scene {
             figures: if self.options.sticks { &[] } else { std::slice::from_ref(&figure) },
+            tubes: &[],
+            decals: &[],
             filmed: FILMED,
             terrain: if self.ground == RideGround::Flat { Terrain::Flat } else { Terrain::Height(&height) },
             grid_m: self.grid_m,

@@ -3,8 +3,8 @@
 use anyhow::bail;
 use clap::Args;
 
+use super::super::output::print;
 use super::options::RideOptions;
-use super::output::print;
 use super::records::{write_csv, write_json};
 use super::ride::Ride;
 use super::table::{write_footfalls, write_table};

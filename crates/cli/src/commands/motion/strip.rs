@@ -1,17 +1,15 @@
 //! `muybridge motion strip`: moments of a ride side by side, as Muybridge printed them.
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Args;
 use image::{Rgb, RgbImage, imageops};
-use muybridge_capture::write_atomically;
 use muybridge_core::Limb;
 
-use super::super::canvas::Canvas;
+use super::super::canvas::{Canvas, write_few_colors};
 use super::options::RideOptions;
-use super::palette::{MOST_COLORS, Palette};
 use super::picture::{CHANGE, Photographer, ViewOptions, caption, write_line};
 use super::ride::{Frame, Ride};
 
@@ -104,7 +102,7 @@ impl StripArguments {
             };
             place(&mut canvas, at, &picture, &frame, &lines);
         }
-        write_png(&self.out, &canvas.picture)?;
+        write_few_colors(&self.out, &canvas.picture)?;
         println!("{}", self.out.display());
         Ok(())
     }
@@ -155,21 +153,4 @@ fn place(canvas: &mut Canvas, at: [u32; 2], picture: &RgbImage, frame: &Frame, l
 fn fill(canvas: &mut Canvas, [x, y]: [u32; 2], [width, height]: [u32; 2], colour: Rgb<u8>) {
     let area = imageproc::rect::Rect::at(x as i32, y as i32).of_size(width, height);
     imageproc::drawing::draw_filled_rect_mut(&mut canvas.picture, area, colour);
-}
-
-/// Writes a picture with a palette: a third of the bytes of one without.
-fn write_png(path: &Path, picture: &RgbImage) -> anyhow::Result<()> {
-    let palette = Palette::choose(std::slice::from_ref(picture), MOST_COLORS);
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, picture.width(), picture.height());
-    encoder.set_color(png::ColorType::Indexed);
-    encoder.set_palette(palette.bytes());
-    encoder.set_compression(png::Compression::High);
-    encoder.set_filter(png::Filter::NoFilter);
-    let encoded = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(&palette.indices(picture))?;
-        writer.finish()
-    });
-    encoded.context("cannot encode the picture")?;
-    Ok(write_atomically(path, &bytes)?)
 }

@@ -1,0 +1,68 @@
+//! The curve of the centre of mass, ready to be drawn: made anew only when the motion changes.
+
+use egui::Color32;
+use glam::DVec3;
+use muybridge_footprints::{Motion, Remark};
+
+use crate::colors;
+use crate::footprints::support::{Phase, phases};
+
+/// Time between two points of the curve, s.
+const STEP_S: f64 = 1.0 / 60.0;
+/// Points of the whole curve at most: that of a long track is coarser.
+const MOST_POINTS: f64 = 30_000.0;
+
+/// A part of the curve with the same feet on the ground.
+pub(super) struct Run {
+    pub(super) color: Color32,
+    pub(super) points: Vec<DVec3>,
+    pub(super) times_s: Vec<f64>,
+}
+
+/// The curve and what belongs to it.
+#[derive(Default)]
+pub(super) struct Curve {
+    version: Option<u64>,
+    pub(super) phases: Vec<Phase>,
+    pub(super) runs: Vec<Run>,
+    /// Place and velocity at each knot.
+    pub(super) knots: Vec<(DVec3, DVec3)>,
+    /// Lowest and highest centre of mass, metres.
+    pub(super) heights_m: [f64; 2],
+    pub(super) remarks: Vec<Remark>,
+}
+
+impl Curve {
+    /// Follows the motion.
+    pub(super) fn follow(&mut self, motion: Option<&Motion>, version: u64) {
+        if self.version == Some(version) {
+            return;
+        }
+        *self = motion.map_or_else(Self::default, Self::of);
+        self.version = Some(version);
+    }
+
+    fn of(motion: &Motion) -> Self {
+        let phases = phases(&motion.placed);
+        let step_s = STEP_S.max(motion.duration_s() / MOST_POINTS);
+        let run = |phase: &Phase| {
+            let steps = ((phase.to_s - phase.from_s) / step_s).ceil().clamp(1.0, MOST_POINTS) as usize;
+            let time_s = |i: usize| phase.from_s + (phase.to_s - phase.from_s) * i as f64 / steps as f64;
+            let times_s: Vec<f64> = (0..=steps).map(time_s).collect();
+            let points = times_s.iter().map(|time_s| motion.centre_of_mass(*time_s).at).collect();
+            Run { color: colors::support(&phase.down), points, times_s }
+        };
+        let runs: Vec<Run> = phases.iter().map(run).collect();
+        let heights = || runs.iter().flat_map(|run| &run.points).map(|at| at.y).filter(|y| y.is_finite());
+        let heights_m =
+            [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
+        let knots = motion.solved.trajectory.knots.iter().map(|knot| (knot.at, knot.velocity)).collect();
+        Self { version: None, heights_m, knots, remarks: motion.remarks(), phases, runs }
+    }
+
+    /// The phase at a time.
+    pub(super) fn phase_at(&self, time_s: f64) -> Option<&Phase> {
+        let after = self.phases.partition_point(|phase| phase.to_s <= time_s);
+        self.phases.get(after).or(self.phases.last())
+    }
+}
