@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::orientation::Orientation;
 use crate::placed::Placed;
 use crate::pose::BipedPose;
-use crate::problem::{Energy, Problem};
+use crate::problem::Problem;
 use crate::shape::{self, Tube};
 use crate::solve::{Method, Solved, descend, resolve, solve};
 use crate::timing::TimingRule;
@@ -318,16 +318,6 @@ impl Motion {
                 mean_m_s2 / 9.81
             );
             (mean_m_s2 > STRETCHED_M_S2).then_some(Remark { print, text })
-        })
-    }
-
-    /// Energy of each curve, with its beginning and end, s.
-    pub fn energies(&self) -> impl Iterator<Item = ([f64; 2], Energy)> + '_ {
-        let (times_s, knots) = (&self.solved.trajectory.times_s, &self.solved.trajectory.knots);
-        (0..self.problem.curves()).map(|curve| {
-            let [physics, comfort] =
-                self.problem.curve_energy(curve, [&knots[curve], &knots[curve + 1]], 0.0);
-            ([times_s[curve], times_s[curve + 1]], Energy { physics, comfort })
         })
     }
 }

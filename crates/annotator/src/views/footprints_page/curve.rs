@@ -56,7 +56,11 @@ impl Curve {
         let heights = || runs.iter().flat_map(|run| &run.points).map(|at| at.y).filter(|y| y.is_finite());
         let heights_m =
             [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
-        let knots = motion.solved.trajectory.knots.iter().map(|knot| (knot.at, knot.velocity)).collect();
+        // A horse's curve begins before its prints and ends after them.
+        let trajectory = &motion.solved.trajectory;
+        let knots = trajectory.times_s.iter().zip(&trajectory.knots);
+        let shown = knots.filter(|(time_s, _)| (0.0..=motion.duration_s()).contains(*time_s));
+        let knots = shown.map(|(_, knot)| (knot.at, knot.velocity)).collect();
         Self { version: None, heights_m, knots, remarks: motion.remarks(), phases, runs }
     }
 
