@@ -9,7 +9,7 @@ use super::sheet::Color;
 const MEADOW: Color = [236, 240, 226];
 const TREE: Color = [122, 158, 104];
 /// Side of the square, and distance between trees, for each metre of the figure's step.
-const SIDE_STEPS: f64 = 18.0;
+const SIDE_STEPS: f64 = 30.0;
 const GAP_STEPS: f64 = 3.2;
 
 /// Arguments of `wander`.
