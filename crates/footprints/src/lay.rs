@@ -56,7 +56,7 @@ pub enum LayError {
         /// Most, metres.
         most_m: f64,
     },
-    /// More prints than [`crate::track`] takes.
+    /// More prints than a track takes.
     #[error("the path is {steps} steps long; {most} are the most")]
     TooMany {
         /// Wanted.
