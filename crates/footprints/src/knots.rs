@@ -65,7 +65,9 @@ pub(crate) fn weighted(weights: &KnotWeights, first: &Knot, second: &Knot) -> DV
 impl Trajectory {
     /// The curve at a time, s; held at its ends, where it also has their velocity. An empty curve is at the origin.
     pub fn at(&self, time_s: f64) -> CentreOfMass {
-        let Some(last) = self.knots.len().checked_sub(1) else { return CentreOfMass::default() };
+        let Some(last) = self.knots.len().min(self.times_s.len()).checked_sub(1) else {
+            return CentreOfMass::default();
+        };
         let (first_s, last_s) = (self.times_s[0], self.times_s[last]);
         let held_s = if time_s.is_nan() { first_s } else { time_s.clamp(first_s, last_s) };
         if last == 0 {
