@@ -6,7 +6,6 @@ pub mod examples;
 pub mod playback;
 pub mod safe_copy;
 pub mod solving;
-pub mod support;
 pub mod wandering;
 
 use std::collections::BTreeSet;

@@ -63,6 +63,12 @@ pub(crate) fn weighted(weights: &KnotWeights, first: &Knot, second: &Knot) -> DV
 }
 
 impl Trajectory {
+    /// The knots from one time to another, s, with their times.
+    pub fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = (f64, &Knot)> {
+        let knots = self.times_s.iter().copied().zip(&self.knots);
+        knots.filter(move |(time_s, _)| (from_s..=to_s).contains(time_s))
+    }
+
     /// The curve at a time, s; held at its ends, where it also has their velocity. An empty curve is at the origin.
     pub fn at(&self, time_s: f64) -> CentreOfMass {
         let Some(last) = self.knots.len().min(self.times_s.len()).checked_sub(1) else {

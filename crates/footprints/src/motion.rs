@@ -6,7 +6,7 @@ use std::sync::Arc;
 use muybridge_core::Pose;
 
 use crate::biped::{Biped, stances};
-use crate::horse::{HorseModel, HorseMotion, HorsePlan, lay_horse};
+use crate::horse::{HOOF_OUTLINE_M, HorseModel, HorseMotion, HorsePlan, lay_horse};
 use crate::knots::{CentreOfMass, Knot, Trajectory};
 use crate::lay::lay_biped;
 use crate::model::Model;
@@ -44,6 +44,14 @@ impl Character {
             return Some(Self::Horse(HorseModel::reference()));
         }
         Model::named(name).map(|model| Self::Biped(Arc::new(model)))
+    }
+
+    /// Outline of a right foot's print, x ahead and z to the right of its middle, metres; a left one's is its mirror image.
+    pub fn outline_m(&self) -> &[[f64; 2]] {
+        match self {
+            Self::Biped(model) => &model.leg.foot.outline_m,
+            Self::Horse(_) => &HOOF_OUTLINE_M,
+        }
     }
 
     /// Its feet.
@@ -140,7 +148,8 @@ pub struct Motion {
     pub track: Track,
     /// The prints on the ground.
     pub placed: Placed,
-    /// The solution.
+    /// The solution. A horse that is in its gait at the beginning or the end has two more strides there that are not shown, whose
+    /// knots and energy are among these.
     pub solved: Solved,
     problem: Problem,
     carried: Carried,
@@ -221,31 +230,6 @@ impl Motion {
         self.solved.trajectory.at(time_s)
     }
 
-    /// The feet on the ground at a time.
-    pub fn feet_down(&self, time_s: f64) -> Vec<Foot> {
-        let is_down = |foot: &Foot| {
-            let mut prints = self.placed.prints.iter().filter(|print| print.foot == *foot);
-            prints.any(|print| print.strike_s <= time_s && time_s < print.lift_off_s)
-        };
-        self.character().feet().iter().copied().filter(is_down).collect()
-    }
-
-    /// Times without a foot on the ground: from, to, s.
-    pub fn flights_s(&self) -> Vec<[f64; 2]> {
-        let mut flights = Vec::new();
-        let mut until_s = 0.0_f64;
-        for print in &self.placed.prints {
-            if print.strike_s > until_s {
-                flights.push([until_s, print.strike_s]);
-            }
-            until_s = until_s.max(print.lift_off_s);
-        }
-        if self.placed.end_s > until_s {
-            flights.push([until_s, self.placed.end_s]);
-        }
-        flights
-    }
-
     /// The figure at a time, s; held at the ends.
     pub fn figure(&self, time_s: f64) -> Figure {
         match &self.carried {
@@ -307,7 +291,9 @@ impl Motion {
     fn stretched(&self) -> impl Iterator<Item = Remark> + '_ {
         let (times_s, knots) = (&self.solved.trajectory.times_s, &self.solved.trajectory.knots);
         let physics = self.track.weights.physics.max(f64::MIN_POSITIVE);
-        (0..self.problem.curves()).filter_map(move |curve| {
+        // A horse's curve begins before its prints and ends after them: nobody sees that.
+        let is_shown = |curve: &usize| times_s[*curve] >= 0.0 && times_s[curve + 1] <= self.placed.end_s;
+        (0..self.problem.curves()).filter(is_shown).filter_map(move |curve| {
             let [missing, _] = self.problem.curve_energy(curve, [&knots[curve], &knots[curve + 1]], 0.0);
             let mean_m_s2 = missing / physics / (times_s[curve + 1] - times_s[curve]);
             let print =

@@ -99,7 +99,8 @@ fn the_gradient_finds_lower_energies_than_the_greedy_search_and_the_same_ones_fr
     println!("{descents} of {TRACKS} tracks: they do without the pendulum's step, the solver's first one");
     let missed =
         found.iter().filter(|found| lowest(&found.descent) < (1.0 - SAME) * found.gradient[0].total());
-    println!("{} of {TRACKS} tracks: a start finds what is lower by more than that", missed.count());
+    let missed = missed.count();
+    println!("{missed} of {TRACKS} tracks: a start finds what is lower by more than that");
     for found in &not_lower {
         println!(
             "  not lower: {}: {:.4} against {:.4}",
@@ -119,4 +120,7 @@ fn the_gradient_finds_lower_energies_than_the_greedy_search_and_the_same_ones_fr
     assert!(not_lower.is_empty());
     assert!(lower >= 0.05, "{lower}");
     assert!(differing.len() as f64 <= 0.05 * TRACKS as f64, "{} differ", differing.len());
+    // The first step makes the three agree; what the solver does without it, 148 and 18 of 200 when this was written, must not get worse.
+    assert!(descents >= 140, "{descents} agree without the first step");
+    assert!(missed <= 24, "in {missed} a start descends lower");
 }

@@ -29,3 +29,21 @@ pub(crate) use lay::lay_horse;
 pub use model::HorseModel;
 pub(crate) use motion::HorseMotion;
 pub(crate) use plan::HorsePlan;
+
+/// The outline of a right hoof's print, x ahead and z to the right of its middle, metres: a shoe of 13 cm, by eye.
+pub const HOOF_OUTLINE_M: [[f64; 2]; 14] = [
+    [-0.062, -0.046],
+    [-0.02, -0.062],
+    [0.03, -0.056],
+    [0.06, -0.028],
+    [0.067, 0.0],
+    [0.06, 0.028],
+    [0.03, 0.056],
+    [-0.02, 0.062],
+    [-0.062, 0.046],
+    [-0.055, 0.026],
+    [-0.012, 0.033],
+    [0.026, 0.0],
+    [-0.012, -0.033],
+    [-0.055, -0.026],
+];

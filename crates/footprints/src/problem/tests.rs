@@ -8,6 +8,7 @@ use crate::greedy;
 use crate::motion::{Character, Motion};
 use crate::random_tracks::random_track;
 use crate::solve::{Method, solve};
+use crate::supports::Support;
 use crate::track::Track;
 
 fn problem(seed: u64) -> Problem {
@@ -111,7 +112,11 @@ fn flights_are_ballistic() {
         let track = random_track(seed);
         let motion =
             Motion::solve(&track, &Character::named(&track.model).unwrap(), Method::Gradient).unwrap();
-        for [from_s, to_s] in motion.flights_s().into_iter().filter(|[from_s, to_s]| to_s - from_s > 0.05) {
+        for flight in motion.placed.supports().into_iter().filter(Support::is_flight) {
+            let [from_s, to_s] = [flight.from_s, flight.to_s];
+            if to_s - from_s <= 0.05 {
+                continue;
+            }
             let (from, to) = (motion.centre_of_mass(from_s), motion.centre_of_mass(to_s));
             let duration_s = to_s - from_s;
             // Height over the chord in the middle of the flight: g T² / 8.

@@ -2,10 +2,9 @@
 
 use egui::Color32;
 use glam::DVec3;
-use muybridge_footprints::{Motion, Remark};
+use muybridge_footprints::{Foot, Motion, Remark, Support};
 
 use crate::colors;
-use crate::footprints::support::{Phase, phases};
 
 /// Time between two points of the curve, s.
 const STEP_S: f64 = 1.0 / 60.0;
@@ -23,7 +22,7 @@ pub(super) struct Run {
 #[derive(Default)]
 pub(super) struct Curve {
     version: Option<u64>,
-    pub(super) phases: Vec<Phase>,
+    pub(super) supports: Vec<Support>,
     pub(super) runs: Vec<Run>,
     /// Place and velocity at each knot.
     pub(super) knots: Vec<(DVec3, DVec3)>,
@@ -43,30 +42,28 @@ impl Curve {
     }
 
     fn of(motion: &Motion) -> Self {
-        let phases = phases(&motion.placed);
+        let supports = motion.placed.supports();
         let step_s = STEP_S.max(motion.duration_s() / MOST_POINTS);
-        let run = |phase: &Phase| {
-            let steps = ((phase.to_s - phase.from_s) / step_s).ceil().clamp(1.0, MOST_POINTS) as usize;
-            let time_s = |i: usize| phase.from_s + (phase.to_s - phase.from_s) * i as f64 / steps as f64;
+        let run = |support: &Support| {
+            let steps = ((support.to_s - support.from_s) / step_s).ceil().clamp(1.0, MOST_POINTS) as usize;
+            let time_s =
+                |i: usize| support.from_s + (support.to_s - support.from_s) * i as f64 / steps as f64;
             let times_s: Vec<f64> = (0..=steps).map(time_s).collect();
             let points = times_s.iter().map(|time_s| motion.centre_of_mass(*time_s).at).collect();
-            Run { color: colors::support(&phase.down), points, times_s }
+            Run { color: colors::support(&support.down), points, times_s }
         };
-        let runs: Vec<Run> = phases.iter().map(run).collect();
+        let runs: Vec<Run> = supports.iter().map(run).collect();
         let heights = || runs.iter().flat_map(|run| &run.points).map(|at| at.y).filter(|y| y.is_finite());
         let heights_m =
             [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
         // A horse's curve begins before its prints and ends after them.
-        let trajectory = &motion.solved.trajectory;
-        let knots = trajectory.times_s.iter().zip(&trajectory.knots);
-        let shown = knots.filter(|(time_s, _)| (0.0..=motion.duration_s()).contains(*time_s));
-        let knots = shown.map(|(_, knot)| (knot.at, knot.velocity)).collect();
-        Self { version: None, heights_m, knots, remarks: motion.remarks(), phases, runs }
+        let knots = motion.solved.trajectory.between(0.0, motion.duration_s());
+        let knots = knots.map(|(_, knot)| (knot.at, knot.velocity)).collect();
+        Self { version: None, heights_m, knots, remarks: motion.remarks(), supports, runs }
     }
 
-    /// The phase at a time.
-    pub(super) fn phase_at(&self, time_s: f64) -> Option<&Phase> {
-        let after = self.phases.partition_point(|phase| phase.to_s <= time_s);
-        self.phases.get(after).or(self.phases.last())
+    /// The feet on the ground at a time.
+    pub(super) fn down(&self, time_s: f64) -> &[Foot] {
+        Support::at(&self.supports, time_s).map_or(&[], |support| &support.down)
     }
 }

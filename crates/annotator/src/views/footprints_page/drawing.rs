@@ -1,7 +1,7 @@
 //! What is drawn in the plan: prints in the model's outline, the centre of mass, the path, where it is now.
 
 use egui::{Align2, Color32, FontId, Pos2, Shape, Stroke, Ui, Vec2, vec2};
-use muybridge_footprints::{Foot, Model, Path, Print, Track};
+use muybridge_footprints::{Foot, HOOF_OUTLINE_M, Model, Path, Print, Track};
 
 use super::curve::Curve;
 use super::plan_view::{Canvas, tame};
@@ -9,10 +9,6 @@ use crate::colors;
 use crate::footprints::edits::{direction, is_left};
 use crate::toast::trouble_color;
 
-/// Half the length and half the width of a hoof, metres.
-const HOOF_M: [f64; 2] = [0.065, 0.058];
-/// Corners of a hoof's outline.
-const HOOF_CORNERS: usize = 16;
 /// Prints are drawn as dots where a foot is shorter than this, points.
 const LEAST_FOOT: f32 = 5.0;
 /// Dots of prints that are too small to be seen as feet, points.
@@ -44,13 +40,9 @@ pub(super) struct FootShape {
 impl FootShape {
     /// The foot of a model that is built in; a hoof for any other.
     pub(super) fn of(model: &str) -> Self {
-        let hoof = |i: usize| {
-            let (sin, cos) = (std::f64::consts::TAU * i as f64 / HOOF_CORNERS as f64).sin_cos();
-            [HOOF_M[0] * cos, HOOF_M[1] * sin]
-        };
         let outline_m = match Model::named(model) {
             Some(model) if model.leg.foot.outline_m.len() > 2 => model.leg.foot.outline_m,
-            _ => (0..HOOF_CORNERS).map(hoof).collect(),
+            _ => HOOF_OUTLINE_M.to_vec(),
         };
         let most = |i: usize| outline_m.iter().map(|corner| corner[i].abs()).fold(0.01, f64::max);
         Self { model: model.into(), toe_m: most(0), half_width_m: most(1), outline_m }

@@ -203,8 +203,7 @@ fn present(ui: &Ui, canvas: &Canvas, editor: &Editor, curve: &Curve) {
     let (Some(motion), time_s) = (editor.motion(), editor.playback.time_s()) else { return };
     let now = motion.centre_of_mass(time_s);
     let heading = vec2(now.velocity.x as f32, now.velocity.z as f32);
-    let down = curve.phase_at(time_s).map(|phase| phase.down.clone()).unwrap_or_default();
-    drawing::present(ui, canvas, [now.at.x, now.at.z], heading, &down);
+    drawing::present(ui, canvas, [now.at.x, now.at.z], heading, curve.down(time_s));
 }
 
 /// Faults beside their prints; a remark beside the print under the pointer.

@@ -106,7 +106,8 @@ impl SceneView {
             return;
         };
         let mut parts = Parts::default();
-        let placed = Self::place(motion, editor.playback.time_s(), &mut parts);
+        let time_s = editor.playback.time_s();
+        let placed = Self::place(motion, time_s, curve.down(time_s), &mut parts);
         let Some((at, heading_rad, size)) = placed else { return };
         let near_m = NEAR * f64::from(size);
         let is_near = |place: DVec3| place.distance(at) < near_m;
@@ -125,7 +126,7 @@ impl SceneView {
     }
 
     /// Adds the figure to what is drawn; its place, heading (radians) and size in reference horses.
-    fn place(motion: &Motion, time_s: f64, parts: &mut Parts) -> Option<(DVec3, f32, f32)> {
+    fn place(motion: &Motion, time_s: f64, down: &[Foot], parts: &mut Parts) -> Option<(DVec3, f32, f32)> {
         let figure = motion.figure(time_s);
         match &figure {
             Figure::Biped(pose) => {
@@ -136,7 +137,6 @@ impl SceneView {
             Figure::Horse(pose) => {
                 let Character::Horse(horse) = motion.character() else { return None };
                 let joints = pose.joints(horse.skeleton());
-                let down = motion.feet_down(time_s);
                 let standing = Foot::QUADRUPED.map(|foot| down.contains(&foot));
                 let figure = FigurePose { joints, standing, ghost: false };
                 let trunk = joints.tips[bone::SPINE_LAST] - joints.root;

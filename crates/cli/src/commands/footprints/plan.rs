@@ -1,12 +1,12 @@
 //! The plan: prints with their timing daggers, the way of the centre of mass, the ground's heights.
 
 use glam::{DVec2, DVec3};
-use muybridge_footprints::{Character, Knot, Placed, PlacedPrint, Terrain, Trajectory};
+use muybridge_footprints::{Character, Placed, PlacedPrint, Support, Terrain, Trajectory};
 
 use super::chart::{Axis, Chart, FOOT_PX, round_step};
 use super::relief;
 use super::sheet::{Anchor, Color, INK, MUTED, SMALL_PX, Sheet};
-use super::supports::{Support, color, foot_color, legend, supports};
+use super::supports::{color, foot_color, legend};
 use super::walk::{Walk, outline};
 
 /// Room around prints and daggers, in distances of the prints.
@@ -32,15 +32,6 @@ pub(super) fn times(support: &Support) -> impl Iterator<Item = f64> + use<> {
     let (from_s, length_s) = (support.from_s, support.to_s - support.from_s);
     let parts = (length_s * SAMPLES_PER_S).clamp(SAMPLES, MOST_SAMPLES).ceil() as u32;
     (0..=parts).map(move |i| from_s + length_s * f64::from(i) / f64::from(parts))
-}
-
-/// The knots of a curve, with their times, while the prints last; the curve of a horse begins before them and ends later.
-pub(super) fn shown_knots<'a>(
-    placed: &'a Placed,
-    trajectory: &'a Trajectory,
-) -> impl Iterator<Item = (f64, &'a Knot)> {
-    let knots = trajectory.times_s.iter().copied().zip(&trajectory.knots);
-    knots.filter(|(time_s, _)| (0.0..=placed.end_s).contains(time_s))
 }
 
 /// What a plan shows.
@@ -70,7 +61,7 @@ impl<'a> View<'a> {
 
     /// The plan on a sheet of a width, px.
     pub(super) fn draw(&self, width_px: f64) -> Sheet {
-        let supports = supports(self.placed);
+        let supports = self.placed.supports();
         let dagger = Dagger::new(self.placed);
         let chart = self.chart(&supports, &dagger, width_px);
         let mut sheet = chart.sheet();
@@ -94,7 +85,9 @@ impl<'a> View<'a> {
             let points = times(support).map(|time_s| place(self.trajectory.at(time_s).at)).collect();
             sheet.line(points, color(&support.down), 3.0);
         }
-        shown_knots(self.placed, self.trajectory).for_each(|(_, knot)| sheet.dot(place(knot.at), 2.6, INK));
+        self.trajectory
+            .between(0.0, self.placed.end_s)
+            .for_each(|(_, knot)| sheet.dot(place(knot.at), 2.6, INK));
         self.number_prints(&mut sheet, chart.scale(0), &place);
         chart.draw_title(&mut sheet, &self.title, &self.about);
         let mut entries = legend(&supports);

@@ -3,14 +3,14 @@
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use image::{Rgb, RgbImage, RgbaImage};
 use muybridge_core::{Limb, Side};
-use muybridge_footprints::{Figure, Foot, Terrain};
+use muybridge_footprints::{Figure, Foot, Support, Terrain};
 use muybridge_imaging::figure::{
     Camera, Decal, Figure as Horse, FigureColors, Scene, Terrain as Ground, Tube, render,
 };
 
 use super::plan::times;
 use super::silhouette;
-use super::supports::{color, feet_down, foot_color, supports};
+use super::supports::{color, foot_color};
 use super::unrolled::Unrolled;
 use super::walk::Walk;
 
@@ -64,7 +64,7 @@ impl<'a> Photographer<'a> {
         let first = walk.motion.centre_of_mass(0.0).at;
         let height_m = top - walk.ground_m(DVec2::new(first.x, first.z));
         let mut curve = Vec::new();
-        for support in supports(&walk.motion.placed) {
+        for support in walk.motion.placed.supports() {
             let points: Vec<Vec3> =
                 times(&support).map(|time_s| walk.motion.centre_of_mass(time_s).at.as_vec3()).collect();
             let mut from = 0;
@@ -197,7 +197,8 @@ impl<'a> Photographer<'a> {
     fn add_figure(&self, time_s: f64, horses: &mut Vec<Horse>, tubes: &mut Vec<Tube>) {
         let figure = self.walk.motion.figure(time_s);
         if let (Figure::Horse(pose), Some(skeleton)) = (&figure, self.walk.skeleton()) {
-            let down = feet_down(&self.walk.motion.placed, time_s);
+            let supports = self.walk.motion.placed.supports();
+            let down = Support::at(&supports, time_s).map_or(&[][..], |support| &support.down);
             let standing = Limb::ALL.map(|limb| down.contains(&Foot::QUADRUPED[limb.index()]));
             horses.push(Horse { joints: pose.joints(skeleton), standing, ghost: false });
         }

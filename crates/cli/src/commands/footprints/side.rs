@@ -1,12 +1,13 @@
 //! The side view: the curve of the centre of mass with its tangents, pale figures, the ground.
 
 use glam::DVec3;
+use muybridge_footprints::Support;
 
 use super::chart::{Axis, Chart};
-use super::plan::{shown_knots, times};
+use super::plan::times;
 use super::sheet::{Color, INK, Sheet};
 use super::silhouette;
-use super::supports::{Support, color, foot_color, legend, supports};
+use super::supports::{color, foot_color, legend};
 use super::unrolled::Unrolled;
 use super::walk::Walk;
 
@@ -25,7 +26,7 @@ const UNDER_M: f64 = 0.12;
 /// The side view of a motion on a sheet of a width, px.
 pub(super) fn side(walk: &Walk, title: &str, width_px: f64) -> Sheet {
     let way = Unrolled::of(walk);
-    let supports = supports(&walk.motion.placed);
+    let supports = walk.motion.placed.supports();
     let moments = way.moments(APART * silhouette::length_m(walk, &way), MOST_FIGURES);
     let chart = chart(walk, &way, &moments, &supports, width_px);
     let mut sheet = chart.sheet();
@@ -106,7 +107,7 @@ fn draw_curve(
     place: &impl Fn([f64; 2]) -> [f64; 2],
 ) {
     let trajectory = &walk.motion.solved.trajectory;
-    let knots = || shown_knots(&walk.motion.placed, trajectory);
+    let knots = || trajectory.between(0.0, walk.motion.duration_s());
     for (time_s, knot) in knots() {
         let reach = knot.velocity * TANGENT_S;
         let ends = [knot.at - reach, knot.at + reach].map(|at| place(way.place(time_s, at)));

@@ -2,11 +2,10 @@
 
 use glam::{DVec3, Vec3};
 use muybridge_core::{BONE_COUNT, Skeleton};
-use muybridge_footprints::{Character, Figure};
+use muybridge_footprints::{Character, Figure, Support};
 use serde::Serialize;
 
 use super::summary::rounded;
-use super::supports::Sweep;
 use super::walk::Walk;
 
 /// Schema version of a solution file.
@@ -73,15 +72,15 @@ pub(super) fn solution(walk: &Walk, method: &'static str, frames_per_s: f64) -> 
     let motion = &walk.motion;
     let trajectory = &motion.solved.trajectory;
     let knots = trajectory.times_s.iter().zip(&trajectory.knots);
-    let mut sweep = Sweep::new(&motion.placed);
+    let supports = motion.placed.supports();
     let last = (motion.duration_s() * frames_per_s - 1e-6).ceil().max(0.0) as u32;
     let frame = |i: u32| {
         let time_s = (f64::from(i) / frames_per_s).min(motion.duration_s());
-        let down = sweep.down(time_s).into_iter().map(muybridge_footprints::Foot::abbreviation);
+        let down = Support::at(&supports, time_s).map_or(&[][..], |support| &support.down);
         Frame {
             time_s: rounded(time_s),
             centre_of_mass_m: place(motion.centre_of_mass(time_s).at),
-            down: down.collect(),
+            down: down.iter().map(|foot| foot.abbreviation()).collect(),
             joints_m: joints(walk, time_s).into_iter().map(place).collect(),
         }
     };

@@ -1,10 +1,11 @@
 //! The motion in three dimensions: moments side by side, and all of the way in one picture.
 
 use image::imageops;
+use muybridge_footprints::Support;
 
 use super::sheet::{Anchor, INK, MUTED, SMALL_PX, Sheet, TITLE_PX};
 use super::shot::Photographer;
-use super::supports::{color, feet_down, legend, supports};
+use super::supports::{color, legend};
 use super::unrolled::Unrolled;
 use super::walk::Walk;
 
@@ -32,17 +33,18 @@ pub(super) fn strip(walk: &Walk, title: &str, width_px: f64, moments: u32) -> Sh
     let rows = moments.div_ceil(columns);
     let mut sheet = Sheet::new([width_px, TITLE_ROOM_PX + f64::from(rows) * row_px]);
     draw_title(&mut sheet, title, "moments");
+    let supports = walk.motion.placed.supports();
     for i in 0..moments {
         let time_s = walk.motion.duration_s() * f64::from(i) / f64::from((moments - 1).max(1));
         let picture = photographer.shoot(&photographer.along(time_s, size, true), &[time_s], size);
         let left = (GAP_PX + f64::from(i % columns) * (cell + GAP_PX)).round();
         let top = (TITLE_ROOM_PX + f64::from(i / columns) * row_px).round();
         sheet.picture([left, top], picture);
-        let down = feet_down(&walk.motion.placed, time_s);
+        let down = Support::at(&supports, time_s).map_or(&[][..], |support| &support.down);
         let feet: Vec<&str> = down.iter().map(|foot| foot.abbreviation()).collect();
         let words = if feet.is_empty() { "flight".to_string() } else { feet.join(" ") };
         let base = top + f64::from(size[1]) + 17.0;
-        sheet.rectangle([left + 2.0, base - 10.0], [10.0, 10.0], color(&down));
+        sheet.rectangle([left + 2.0, base - 10.0], [10.0, 10.0], color(down));
         sheet.text([left + 18.0, base], &words, INK, SMALL_PX, Anchor::Start);
         let right = left + f64::from(size[0]);
         sheet.text([right - 2.0, base], &format!("{time_s:.2} s"), MUTED, SMALL_PX, Anchor::End);
@@ -62,7 +64,7 @@ pub(super) fn scene(walk: &Walk, title: &str, width_px: f64) -> Sheet {
     let mut x = GAP_PX + 8.0;
     sheet.picture([GAP_PX, TITLE_ROOM_PX], imageops::crop_imm(&picture, 0, 0, size[0], size[1]).to_image());
     let base = TITLE_ROOM_PX + f64::from(size[1]) + 20.0;
-    for (color, words) in legend(&supports(&walk.motion.placed)) {
+    for (color, words) in legend(&walk.motion.placed.supports()) {
         sheet.rectangle([x, base - 10.0], [18.0, 10.0], color);
         sheet.text([x + 24.0, base], &words, MUTED, SMALL_PX, Anchor::Start);
         x += 50.0 + 6.9 * words.chars().count() as f64;

@@ -3,10 +3,9 @@
 use std::io::Write;
 
 use glam::DVec2;
-use muybridge_footprints::{CURVE_SAMPLES, Solved};
+use muybridge_footprints::{CURVE_SAMPLES, Solved, Support};
 use serde::Serialize;
 
-use super::supports::supports;
 use super::walk::Walk;
 
 /// Schema version of the JSON document.
@@ -155,7 +154,7 @@ impl Summary {
 
 fn flights(walk: &Walk) -> Vec<Flight> {
     let centre = |time_s: f64| walk.motion.centre_of_mass(time_s).at;
-    let flying = supports(&walk.motion.placed).into_iter().filter(|support| support.down.is_empty());
+    let flying = walk.motion.placed.supports().into_iter().filter(Support::is_flight);
     flying
         .map(|support| {
             let length_s = support.to_s - support.from_s;

@@ -4,7 +4,7 @@ use muybridge_footprints::Foot;
 
 use super::chart::{Axis, Chart};
 use super::sheet::{Anchor, PAPER, RULE, SMALL_PX, Sheet};
-use super::supports::{color, foot_color, legend, supports};
+use super::supports::{color, foot_color, legend};
 use super::walk::Walk;
 
 /// Height of a row, and of the bar in it, px.
@@ -40,7 +40,7 @@ pub(super) fn timing(walk: &Walk, title: &str, width_px: f64) -> Sheet {
             sheet.text([0.5 * (from + to), middle(row) + 4.5], &words, PAPER, SMALL_PX, Anchor::Middle);
         }
     }
-    let supports = supports(placed);
+    let supports = placed.supports();
     let top = chart.at[1] + chart.size[1] - STRIP_PX;
     for support in &supports {
         let (from, to) = (x(support.from_s), x(support.to_s));

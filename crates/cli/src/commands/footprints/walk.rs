@@ -9,23 +9,6 @@ use muybridge_footprints::{Character, Figure, MODEL_NAMES, Method, Motion, Place
 
 /// Largest track file: ten thousand prints and a million heights are far smaller.
 const LARGEST_BYTES: u64 = 64 << 20;
-/// The outline of a right hoof's print, x ahead and z to the right of its middle, metres: a shoe of 13 cm, by eye.
-const HOOF_M: [[f64; 2]; 14] = [
-    [-0.062, -0.046],
-    [-0.02, -0.062],
-    [0.03, -0.056],
-    [0.06, -0.028],
-    [0.067, 0.0],
-    [0.06, 0.028],
-    [0.03, 0.056],
-    [-0.02, 0.062],
-    [-0.062, 0.046],
-    [-0.055, 0.026],
-    [-0.012, 0.033],
-    [0.026, 0.0],
-    [-0.012, -0.033],
-    [-0.055, -0.026],
-];
 
 /// A solved track and who walks.
 pub(super) struct Walk {
@@ -117,10 +100,6 @@ impl Walk {
 pub(super) fn outline(character: &Character, print: &PlacedPrint) -> Vec<DVec3> {
     // The left foot's is the mirror image.
     let side = if print.foot.index().is_multiple_of(2) { -1.0 } else { 1.0 };
-    let corners: &[[f64; 2]] = match character {
-        Character::Biped(model) => &model.leg.foot.outline_m,
-        Character::Horse(_) => &HOOF_M,
-    };
     let place = |[x, z]: &[f64; 2]| print.middle + print.world_from_foot * DVec3::new(*x, 0.0, side * z);
-    corners.iter().map(place).collect()
+    character.outline_m().iter().map(place).collect()
 }
